@@ -11,8 +11,8 @@ Pairs      new_pair, load_gear_pair, preset_names, gear_pair_from_rexs; pair.wit
 Motion     predict, dynamic_factor: teeth only push; steady_state, simulate, run_up, speed_sweep, with
            contact="linear", the default, or "unilateral"; response_branches, periodic_orbit
 Gears      geometry, mesh_stiffness, natural_frequencies, static_transmission_error, optimal_relief, bodies
-Trust      report, uncertainty, compare, crosscheck, validity_flags, attribution, power_balance,
-           compare_ross, compare_matrices
+Trust      report, uncertainty, compare, crosscheck, validity_flags, attribution, power_balance
+Your model check: curves of another model, or a record, beside both programs
 Stability  stability_chart, stability_margins, stability_boundaries, campbell
 Any system PeriodicSystem, periodic_system, from_second_order, monodromy
 Signals    order_spectrum, waterfall, time_synchronous_average; more in spurcheck.validation.signals
@@ -80,8 +80,7 @@ if TYPE_CHECKING:  # the one list of the public names; below it is read at run t
     from validation import uncertainty as uncertainty
     from validation import validity_flags as validity_flags
     from validation import write_interactive_page as write_interactive_page
-    from validation.exchange import compare_matrices as compare_matrices
-    from validation.exchange import compare_ross as compare_ross
+    from validation.check import check as check
     from validation.exchange import gear_pair_from_rexs as gear_pair_from_rexs
     from validation.exchange import new_pair as new_pair
     from validation.exchange import write_results as write_results

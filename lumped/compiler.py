@@ -28,7 +28,12 @@ from numba.core.serialize import dumps
 
 from lumped.cache import cache_folder, cores, read_whole, write_whole
 from lumped.kernel_stamps import UnknownDependencyError, compiled_behind, described, stamp_of
-from lumped.linked_code import LINKING_IS_KNOWN, LinkedCompiler, refuse_calls_from_python
+from lumped.linked_code import (
+    LINKING_IS_KNOWN,
+    LinkedCompiler,
+    OptimisingCompiler,
+    refuse_calls_from_python,
+)
 
 F = TypeVar("F", bound=Callable[..., Any])
 Part = TypeVar("Part")
@@ -49,17 +54,19 @@ def compiled(function: Any = None, /, **options: Any) -> Any:
 
     Without the wrapper for callers in C: there are none, and it takes a tenth of the time.
     ``no_cpython_wrapper=True`` is for functions that compiled functions alone call. Their code is compiled
-    and stored as a part of the callers, see ``lumped.linked_code``.
+    and stored as a part of the callers, see ``lumped.linked_code``. ``optimised_first=True`` is for those of
+    them that do most of the work of an inner loop, and have many functions below: the callers become faster,
+    and compiling takes longer.
     """
     if function is None:
         return partial(_compiled, **options)
     return _compiled(function, **options)
 
 
-def _compiled(function: Callable[..., Any], /, **options: Any) -> Any:
+def _compiled(function: Callable[..., Any], /, *, optimised_first: bool = False, **options: Any) -> Any:
     linked = options.get("no_cpython_wrapper", False) and LINKING_IS_KNOWN
     if linked:
-        options["pipeline_class"] = LinkedCompiler
+        options["pipeline_class"] = OptimisingCompiler if optimised_first else LinkedCompiler
     dispatcher = numba.njit(error_model="numpy", no_cfunc_wrapper=True, **options)(function)
     if not numba.config.DISABLE_JIT:
         dispatcher._cache = _NoFiles(dispatcher) if linked else _KernelFiles(dispatcher)
@@ -73,6 +80,8 @@ def _compiled(function: Callable[..., Any], /, **options: Any) -> Any:
 called = compiled(_nrt=False, no_cpython_wrapper=True)
 #: The same for functions of a few lines, whose calls would take longer than their work.
 inlined = compiled(_nrt=False, no_cpython_wrapper=True, forceinline=True)
+#: The same for a function that does most of the work of an inner loop.
+inlined_optimised = compiled(_nrt=False, no_cpython_wrapper=True, forceinline=True, optimised_first=True)
 
 
 def is_stored(function: Callable[..., Any]) -> bool:

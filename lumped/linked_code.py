@@ -51,28 +51,58 @@ class LinkedCode(JITCodeLibrary):  # type: ignore[misc]  # numba ships no types
         return 0
 
 
+class OptimisedCode(LinkedCode):
+    """Intermediate code of a function that is optimised before its callers get it, and once more in them.
+
+    Compiling takes longer. The callers are faster where much of the work of an inner loop is in a function
+    with many functions below it: inlined all at once, the optimiser does not see what it sees in the function
+    alone.
+    """
+
+    def _optimize_final_module(self) -> None:
+        """Optimise as numba does."""
+        JITCodeLibrary._optimize_final_module(self)
+
+
 @register_pass(mutates_CFG=False, analysis_only=False)
 class _IntoLinkedCode(LoweringPass):  # type: ignore[misc]
     """Give the function a library that stays intermediate code."""
 
     _name = "into_linked_code"
+    _library: type[LinkedCode] = LinkedCode
 
     def __init__(self) -> None:
         LoweringPass.__init__(self)
 
     def run_pass(self, state: Any) -> bool:
-        state.library = LinkedCode(state.targetctx.codegen(), state.func_id.func_qualname)
+        state.library = self._library(state.targetctx.codegen(), state.func_id.func_qualname)
         return True
+
+
+@register_pass(mutates_CFG=False, analysis_only=False)
+class _IntoOptimisedCode(_IntoLinkedCode):
+    """Give the function a library that stays intermediate code and is optimised."""
+
+    _name = "into_optimised_code"
+    _library = OptimisedCode
 
 
 class LinkedCompiler(CompilerBase):  # type: ignore[misc]
     """numba's compiler in nopython mode, into linked code."""
 
+    _into_code: type[_IntoLinkedCode] = _IntoLinkedCode
+
     def define_pipelines(self) -> list[Any]:
         pipeline = DefaultPassBuilder.define_nopython_pipeline(self.state)
-        pipeline.add_pass_after(_IntoLinkedCode, AnnotateTypes)
+        pipeline.add_pass_after(self._into_code, AnnotateTypes)
         pipeline.finalize()
         return [pipeline]
+
+
+class OptimisingCompiler(LinkedCompiler):
+    """numba's compiler in nopython mode, into linked code that is optimised before it is linked."""
+
+    _into_code = _IntoOptimisedCode
 
 
 def refuse_calls_from_python(dispatcher: Any) -> None:

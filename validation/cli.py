@@ -14,6 +14,7 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperGroup
 
+from validation.commands.check import check
 from validation.commands.compare import compare
 from validation.commands.files import export, init, presets
 from validation.commands.motion import interactive, simulate, teeth, uncertainty
@@ -40,7 +41,7 @@ _INSTEAD = {
     "gui": "spurcheck interactive",
     **dict.fromkeys(("new", "create"), "spurcheck init"),
     **dict.fromkeys(("run", "plot", "figures"), "spurcheck report"),
-    **dict.fromkeys(("check", "verify", "validate"), "spurcheck crosscheck"),
+    **dict.fromkeys(("verify", "validate"), "spurcheck check"),
 }
 
 
@@ -109,7 +110,7 @@ def paragraphs(text: str | None) -> str:
 
 
 COMMANDS = (
-    *(report, presets, init, simulate, export, crosscheck, uncertainty, compare, stability, floquet),
+    *(report, presets, init, simulate, export, crosscheck, uncertainty, compare, check, stability, floquet),
     *(response, teeth, interactive, sweep),
 )
 for command in COMMANDS:

@@ -128,6 +128,8 @@ UNITS: dict[str, StatedUnit] = {
     "mm**2/s": StatedUnit("m**2/s", Decimal("1e-6"), "a kinematic viscosity", "32 cSt"),
     "degC": StatedUnit("K", Decimal(1), "a temperature", "140 degF"),
     "mm/s": StatedUnit("m/s", Decimal("1e-3"), "a velocity", "0.1 inch/s"),
+    "m/s**2": StatedUnit("m/s**2", Decimal(1), "an acceleration", "50 mm/s**2"),
+    "rad/s**2": StatedUnit("rad/s**2", Decimal(1), "an angular acceleration", "2 deg/s**2"),
     "N": StatedUnit("N", Decimal(1), "a force", "5 lbf"),
     "m": StatedUnit("m", Decimal(1), "a length", "3 um"),
     "s": StatedUnit("s", Decimal(1), "a time", "2 ms"),

@@ -281,9 +281,7 @@ def _points(ax: Axes, measured: xr.Dataset, name: str, factor: float) -> None:
         one = measured.sel(channel=channel)
         if str(one["quantity"].item()) == name:
             scatter = one["scatter"] / factor
-            ax.errorbar(
-                one["cycles"], one["measured"] / factor, yerr=scatter, elinewidth=0.6, zorder=4, **look
-            )
+            ax.errorbar(one["cycles"], one["theirs"] / factor, yerr=scatter, elinewidth=0.6, zorder=4, **look)
 
 
 _LOOKS: dict[str, tuple[str, Any, float, float]] = {

@@ -18,7 +18,7 @@ from reproductions.he_cho_singh_2008.figures.figure7 import figure7
 from reproductions.he_cho_singh_2008.figures.law_figures import figure4, figure_of_motions, law_runs
 from reproductions.he_cho_singh_2008.operating_points import papers_pair
 from reproductions.he_cho_singh_2008.records import FigureRecord
-from validation.measurements import Measurement
+from validation.check.curves import Curves
 
 #: Number of a figure -> how it is drawn from its record.
 DRAW: dict[str, Callable[[FigureRecord], Figure]] = {
@@ -35,7 +35,7 @@ def figure_records(
     pair: GearPair | None = None,
     figures: Sequence[str] = tuple(DRAW),
     *,
-    measurements: Sequence[Measurement] = (),
+    measurements: Sequence[Curves] = (),
     with_multibody: bool = True,
     runs: xr.Dataset | None = None,
     progress: Progress | None = None,

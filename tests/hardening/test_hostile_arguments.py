@@ -15,7 +15,6 @@ from lumped.lubrication import film
 from lumped.model.averaged import averaged_state_space
 from lumped.path_of_contact.friction import friction_profile
 from validation import crosscheck
-from validation.measurements import predict
 
 PAIR = lumped.load_gear_pair("nasa_28_28")
 SYSTEM = floquet.PeriodicSystem(lambda t: np.array([[0.0, 1.0], [-1.0 - np.cos(t), -0.1]]), 2.0 * np.pi)
@@ -61,7 +60,6 @@ CALLS = {
     floquet.campbell: ({"pair": PAIR, "speeds_rpm": [4000.0]}, "speeds_rpm mesh_orders orders rtol"),
     floquet.gear_block: ({"source": PAIR}, "rtol"),
     crosscheck: ({"pair": PAIR}, "cycles samples_per_cycle fidelities limit"),
-    predict: ({"pair": PAIR}, "recurrence"),
 }  # fmt: skip
 #: Names that a refusal gives where a pair's own field takes the argument in.
 OWN = {

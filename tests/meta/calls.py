@@ -19,8 +19,10 @@ import lumped
 import validation
 from lumped.model.periodic_system import LTVSystem, without_shafts
 from tests.meta.test_public_names import FUNCTIONS
-from tests.validation.measurements.synthetic import synthetic_measurement
-from validation import exchange, measurements, studies
+from tests.validation.records.tooth_forces import tooth_force_record
+from validation import exchange, studies
+from validation.check import check
+from validation.check.reference import lumped_motion
 from validation.interactive.results import Sampling
 
 PUBLIC = {one.id: one.values[0] for one in FUNCTIONS}
@@ -86,8 +88,9 @@ def _study(pair, folder, supports=None):
 
 def _record(pair):
     """A record of tooth forces, whatever holds the gears of the pair that it is compared with."""
-    truth = measurements.predict(without_shafts(pair), recurrence=7)
-    return synthetic_measurement(truth, seed=1, engagements=10)
+    return tooth_force_record(
+        lumped_motion(without_shafts(pair).healthy, recurrence=7), seed=1, engagements=10
+    )
 
 
 def _page_one(pair, folder, **held):
@@ -157,10 +160,7 @@ COMPUTED = {
     "validation.exchange.compare_matrices": _of(
         "validation.exchange.compare_matrices", np.eye(2), 1e9 * np.array([[2.0, -1.0], [-1.0, 1.0]])
     ),
-    "validation.measurements.evaluate": lambda pair, folder, **held: measurements.evaluate(
-        _record(pair), pair, shift=0.0, **held
-    ),
-    "validation.measurements.predict": _of("validation.measurements.predict"),
+    "validation.check.check": lambda pair, folder, **held: check(pair, _record(pair), explain=False, **held),
     "validation.studies.run_sweep": _study,
 }
 #: Function -> call; refused for a pair with shafts unless springs are asked for.

@@ -57,8 +57,8 @@ AS_GIVEN = {
     "lumped.meeting_teeth", "lumped.run_up", "lumped.simulate", "lumped.speed_sweep", "lumped.static_sharing",
     "lumped.steady_state",
     "lumped.tooth_gaps", "multibody.simulate", "multibody.speed_sweep", "multibody.steady_state",
-    "validation.measurements.evaluate", "validation.measurements.predict", "validation.predict",
-    "validation.compare", "validation.studies.run_sweep", "validation.uncertainty",
+    "validation.check.check", "validation.predict", "validation.compare",
+    "validation.studies.run_sweep", "validation.uncertainty",
 }  # fmt: skip
 #: (function, kind) -> field that the refusal names; "" where a computation has no answer.
 NOT_DONE = {
@@ -73,6 +73,7 @@ NO_FIGURE = {
     "lumped.losses.losses_of_laws", "lumped.meeting_teeth", "lumped.path_of_contact.friction_profile",
     "lumped.shaft_modes", "lumped.stiffness_components", "lumped.tooth_gaps",
     "multibody.attribution", "floquet.stability_boundaries", "floquet.stability_margins",
+    "validation.check.check",
     "validation.exchange.compare_matrices",
     "validation.studies.run_sweep", "validation.uncertainty", "validation.write_interactive_page",
 }  # fmt: skip
@@ -159,8 +160,8 @@ def test_a_function_returns_a_result_or_names_what_it_refuses(result, name, kind
 def _expected(name, kind, outcome):
     """Return the pair of a result. A comparison with a record is at the operating point of the record."""
     pair = changed(name, KINDS[kind])
-    if name == "validation.measurements.evaluate":
-        at_record = outcome.prediction.pair
+    if name == "validation.check.check":
+        at_record = outcome.pair
         ours = pair.to_mapping()
         theirs = at_record.to_mapping()
         for key in ("operating", "sources", "assumed"):
@@ -256,7 +257,7 @@ COUNTS = {
     "floquet.revolution_multipliers": (".cycles", ".multipliers", ".rates"),
     "lumped.static_sharing": (".pinion_tooth", ".gear_tooth", ".largest_load"),
     "validation.predict": (".mesh_cycles",),
-    "validation.measurements.evaluate": (".measurement", ".points"),  # the record is another one
+    "validation.check.check": (".problem", ".second", ".channels"),  # the curves are others
 }
 
 

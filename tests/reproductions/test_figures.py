@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 from matplotlib.figure import Figure
 
-from lumped import geometry, load_gear_pair
+from lumped import geometry, load_gear_pair, steady_state
 from lumped.errors import ParameterError
 from lumped.friction import xu_kahraman
 from lumped.path_of_contact import contact_path
@@ -18,8 +18,8 @@ from reproductions.he_cho_singh_2008.figures.figure7 import measured_points
 from reproductions.he_cho_singh_2008.operating_points import FIGURE_4, FIGURE_7
 from reproductions.he_cho_singh_2008.records import ClaimsTable, ErrataChapter, FigureRecord
 from reproductions.he_cho_singh_2008.twins import agreement
-from tests.validation.measurements.synthetic import synthetic_measurement
-from validation.measurements import predict
+from tests.validation.records.tooth_forces import tooth_force_record
+from validation.check.motion_curves import MotionCurves
 
 
 @pytest.fixture(scope="module")
@@ -110,16 +110,15 @@ def test_multibody_twins_are_near_and_settled(pair):
 
 def test_measured_points_land_on_their_speed_and_pair(pair):
     point = FIGURE_7[1]
-    truth = predict(point.of(pair).with_(friction__law="xu_kahraman"), recurrence=5)
-    record = synthetic_measurement(
-        truth, seed=2, engagements=4, start=1.2, noise_normal=0.0, noise_friction=0.0
-    )
+    law_three = point.of(pair).with_(friction__law="xu_kahraman")
+    truth = MotionCurves(law_three, steady_state(law_three, samples_per_cycle=1024), 1, 5)
+    record = tooth_force_record(truth, seed=2, engagements=4, start=1.2, noise=0.0)
     points = measured_points(pair, record, bins=24)
     assert points.attrs["speed_rpm"] == pytest.approx(point.speed, rel=1e-9)
     # without noise only the alignment and the linear interpolation separate measured and predicted
     assert float(points["relative_rms"].max()) < 5e-3
     b = points.sel(channel="normal_B")
-    g = truth.geometry
+    g = pair.geometry
     assert 1.0 < float(b["cycles"].min()) < float(b["cycles"].max()) < 1.0 + g.contact_ratio
     (record7,) = figure_records(pair, ("7",), measurements=[record], with_multibody=False)
     axes = DRAW["7"](record7).axes

@@ -6,7 +6,8 @@ Sources: docs/how_to/check_your_model.md.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from enum import Enum
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -14,26 +15,38 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from lumped.arguments import real_number
+from lumped.errors import NumericalError, refuse
 from lumped.labelling import labelled_dataset, provenance
+from lumped.model.averaged import natural_frequencies
+from lumped.model.periodic_system import Supports, with_supports
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
-from validation.check.curves import Curves
+from validation.check.curves import Curves, Role, ValuesOverSpeed
 from validation.check.ladder import Explanation, Ladder, climb
 from validation.check.mesh_frequency import SAME
-from validation.check.misfit import Misfit
+from validation.check.misfit import LIMIT, Misfit
 from validation.check.motion_curves import MotionCurves
+from validation.check.over_speed import SpeedMisfit, speed_misfit
+from validation.check.overlay import figure_data
 from validation.check.problem import Problem
+from validation.check.reading.other_model import OtherModel, other_model
+from validation.check.reading.reader import read
 from validation.check.reference import lumped_motion, multibody_motion
+from validation.check.static import StaticRung, static_rung
+from validation.check.words import differs_words, percent, subject
 
 if TYPE_CHECKING:
     import xarray as xr
+    from matplotlib.figure import Figure
 
-#: Default limit of the misfit.
-LIMIT = 0.05
 #: Default processor time of the search for explanations [s].
 BUDGET = 60.0
 #: A change between the last two blocks of cycles above this share of the motion is no settled motion.
 _SETTLED = 0.01
+#: A change of the motion with half the step above this share: the step is too long.
+_RESOLVED = 0.01
+#: Mesh frequency of the rung at low speed over the lowest natural frequency: the motion is nearly static.
+_LOW = 1.0 / 12.0
 #: Unit attribute of a variable whose channels differ in their unit.
 _BY_CHANNEL = "SI, by channel"
 
@@ -46,53 +59,112 @@ class Verdict(Enum):
     NOT_COMPARABLE = "not comparable"
 
 
+class Rung(Enum):
+    """Part of a check, from the simplest to the whole motion. The first rung that fails is the verdict."""
+
+    STATIC = "static"
+    LOW_SPEED = "low speed"
+    MOTION = "motion"
+    OVER_SPEED = "over speed"
+
+
 @dataclass(frozen=True, eq=False)
 class Check:
     """Another model of a gear pair beside both programs.
 
     Attributes
     ----------
-    problem : the curves and our motion of the pair
+    pair : gear pair of the reference, at the speed and torque of the curves
+    name : name of the other model or record
+    role : "model" or "measurement"
     limit : misfit up to which the curves agree
+    static : static quantities that the other model states or shows
+    low_speed : motion of a model that can be called, at a speed at which the motion is nearly static
+    problem : the curves and our motion of the pair; None: no curves at one speed
+    over_speed : values over speed beside ours; None: none were given
     second : misfit of the curves and the motion of the multibody model; None: it has no motion there
     discrepancy : misfit of the multibody model and our motion, at the channels of the curves; NaN: no motion
-    ladder : search for explanations
+    ladder : search for explanations; None: the motion agrees, or no explanations were asked for
     remarks : sentences on the curves: what was assumed, what was not compared
     """
 
-    problem: Problem
+    pair: GearPair
+    name: str
+    role: Role
     limit: float
+    static: StaticRung
+    low_speed: Problem | None
+    problem: Problem | None
+    over_speed: SpeedMisfit | None
     second: Misfit | None
     discrepancy: float
-    ladder: Ladder
+    ladder: Ladder | None
     remarks: tuple[str, ...]
 
     @property
-    def pair(self) -> GearPair:
-        """The gear pair of the reference."""
-        return self.problem.pair
-
-    @property
     def misfit(self) -> float:
-        """Misfit of the curves, against the nearer of both programs."""
+        """Misfit of the motion or of the values over speed, against the nearer of both programs.
+
+        NaN: only static quantities were given.
+        """
+        if self.over_speed is not None:
+            return self.over_speed.value
+        if self.problem is None:
+            return math.nan
         return min(self.problem.misfit.value, math.inf if self.second is None else self.second.value)
 
     @property
+    def failed(self) -> Rung | None:
+        """The first rung that fails; None: no rung fails."""
+        if not self.static.agrees:
+            return Rung.STATIC
+        if self.low_speed is not None and self.low_speed.misfit.value > self.limit:
+            return Rung.LOW_SPEED
+        if self.problem is not None:
+            time_is_right = abs(self.problem.frequency.factor - 1.0) <= SAME
+            return None if self.misfit <= self.limit and time_is_right else Rung.MOTION
+        return Rung.OVER_SPEED if self.over_speed is not None and self.misfit > self.limit else None
+
+    @property
     def verdict(self) -> Verdict:
-        """AGREES up to the limit. NOT_COMPARABLE where both programs differ by more than the curves do."""
-        time_is_right = abs(self.problem.frequency.factor - 1.0) <= SAME
-        if self.misfit <= self.limit:
-            return Verdict.AGREES if time_is_right else Verdict.DIFFERS
-        return Verdict.NOT_COMPARABLE if self.misfit <= self.discrepancy else Verdict.DIFFERS
+        """AGREES where no rung fails; NOT_COMPARABLE where both programs differ by more than the curves."""
+        if self.failed is None:
+            return Verdict.AGREES
+        within = self.failed is Rung.MOTION and self.limit < self.misfit <= self.discrepancy
+        return Verdict.NOT_COMPARABLE if within else Verdict.DIFFERS
+
+    @property
+    def agrees(self) -> bool:
+        """Whether the verdict is AGREES."""
+        return self.verdict is Verdict.AGREES
 
     @property
     def explanations(self) -> tuple[Explanation, ...]:
         """Steps of the ladder, in the order in which they were taken."""
-        return self.ladder.steps
+        return () if self.ladder is None else self.ladder.steps
+
+    @property
+    def words(self) -> str:
+        """The verdict in sentences: misfit and limit, what fails, what the curves are compatible with."""
+        who = subject(self.role)
+        verb = "agrees" if self.agrees else "differs"
+        size = (
+            "" if math.isnan(self.misfit) else f": misfit {percent(self.misfit)}, limit {percent(self.limit)}"
+        )
+        if self.verdict is Verdict.NOT_COMPARABLE:
+            return (
+                f"Not comparable: {who[0].lower()}{who[1:]} differs by {percent(self.misfit)}, but both "
+                f"programs of spurcheck differ by {percent(self.discrepancy)} here."
+            )
+        return f"{who} {verb}{size}." + differs_words(self)
 
     @cached_property
     def channels(self) -> xr.Dataset:
         """Dataset over ``channel``: peaks to peak, means, misfits, and the order that differs most."""
+        if self.problem is None:
+            raise refuse(
+                "channels", "no curves at one speed", "a check of curves", "Read .static or .over_speed."
+            )
         rows = self.problem.misfit.channels
         by_second = [math.nan] * len(rows)
         if self.second is not None:
@@ -101,8 +173,8 @@ class Check:
         columns = {
             "quantity": ([row.channel.channel.quantity for row in rows], "1", "quantity"),
             "units": ([row.channel.channel.kind.unit for row in rows], "1", "SI unit of the channel"),
-            "theirs": ([row.channel.orders.peak_to_peak for row in rows], _BY_CHANNEL, "their peak to peak"),
-            "ours": ([row.ours.peak_to_peak for row in rows], _BY_CHANNEL, "our peak to peak"),
+            "their_peak_to_peak": ([row.channel.orders.peak_to_peak for row in rows], _BY_CHANNEL, "theirs"),
+            "our_peak_to_peak": ([row.ours.peak_to_peak for row in rows], _BY_CHANNEL, "ours"),
             "their_mean": ([row.channel.orders.mean for row in rows], _BY_CHANNEL, "their mean"),
             "our_mean": ([row.ours.mean for row in rows], _BY_CHANNEL, "our mean"),
             "misfit": ([row.total for row in rows], "1", "misfit of orders and mean"),
@@ -121,8 +193,28 @@ class Check:
         return labelled_dataset(
             {name: ("channel", values, unit, words) for name, (values, unit, words) in columns.items()},
             {"channel": ([row.channel.channel.name for row in rows], "1", "channel")},
-            provenance(self.pair) | {"shift": self.problem.misfit.shift, "misfit": self.misfit},
+            provenance(self.pair)
+            | {name: self.problem.motion.motion.attrs[name] for name in ("teeth", "contact", "supports")}
+            | {"shift": self.problem.misfit.shift, "misfit": self.misfit, "verdict": self.verdict.value},
         )
+
+    def plot(self) -> Figure:
+        """Draw both motions over the mesh phase, or both values over speed.
+
+        Raises
+        ------
+        ParameterError : only static quantities were given
+        """
+        from validation.plots.check import motion_figure, speed_figure
+
+        if self.problem is not None:
+            return motion_figure(figure_data(self.problem))
+        if self.over_speed is not None:
+            return speed_figure(self.over_speed.table)
+        raise refuse("plot", "static quantities only", "a check of curves", "Read .static.table.")
+
+    def __str__(self) -> str:
+        return self.words
 
 
 def check(
@@ -132,34 +224,143 @@ def check(
     limit: float = LIMIT,
     explain: bool = True,
     budget: float = BUDGET,
+    phase: float | None = None,
+    supports: Supports | None = None,
+    progress: Callable[[float], None] | None = None,
 ) -> Check:
     """Check curves of another model, or a measured record, against both programs.
 
     Parameters
     ----------
     pair : gear pair, preset name or parameter file, at the speed and torque of the curves
-    theirs : the curves
+    theirs : a file (CSV, xlsx, .mat, NetCDF, .toml that describes a record, .fmu, "model.py:function"), a
+        mapping from names to arrays, a pandas or xarray object, or a function of the parameters that returns
+        such a mapping; see docs/how_to/own_model_files.md
     limit : misfit up to which the curves agree; 0.05 is 5 %
     explain : whether explanations of a difference are searched
     budget : processor time of this search [s]
+    phase : mesh cycles from the moment when pair A was at A to the first sample; default: by correlation
+    supports : "springs", the four of ``bearings``, or "shafts", the elastic ones of ``shafts``; by default
+        the shafts of a pair that has them
+    progress : told the done share
+
+    Returns
+    -------
+    Check: ``verdict``, ``misfit``, ``words``, ``channels``, ``explanations``, ``static``, ``plot()``
 
     Raises
     ------
     ParameterError : curves that cannot be read or compared; the text says what to change
+    NumericalError : no motion of the pair is found
     """
-    gear_pair = load_gear_pair(pair)
+    gear_pair = with_supports(load_gear_pair(pair), supports)
     allowed = real_number("limit", limit, 0.0, 1.0, above=True, action="Give a share: 5 % is 0.05.")
     seconds = real_number("budget", budget, 0.0, unit="s")
-    if not isinstance(theirs, Curves):
-        raise NotImplementedError
-    motion = lumped_motion(gear_pair, theirs.recurrence)
-    problem = Problem.of(gear_pair, theirs, motion)
+    shift = None if phase is None else real_number("phase", phase, unit="mesh cycles")
+    model = other_model(theirs)
+    source = read(theirs, gear_pair) if model is None else model.curves(gear_pair)
+    if isinstance(source, ValuesOverSpeed):
+        return _of_values_over_speed(gear_pair, source, allowed, progress)
+    at_curves = source.at(gear_pair)
+    static = static_rung(source, at_curves)
+    # The mesh stiffness is no motion: the static rung compares it.
+    moving = tuple(channel for channel in source.channels if channel.quantity != "mesh_stiffness")
+    result = Check(
+        pair=at_curves,
+        name=source.name,
+        role=source.role,
+        limit=allowed,
+        static=static,
+        low_speed=None,
+        problem=None,
+        over_speed=None,
+        second=None,
+        discrepancy=math.nan,
+        ladder=None,
+        remarks=source.remarks,
+    )
+    if not moving:
+        return result
+    curves = replace(source, channels=moving)
+    motion = lumped_motion(at_curves, curves.recurrence)
+    problem = Problem.of(at_curves, curves, motion, shift)
+    more: tuple[str, ...] = ()
+    if model is not None:
+        refined = _refined(model, at_curves, moving)
+        problem = replace(problem, refined=refined)
+        more = _resolution_remarks(problem)
+        result = replace(result, low_speed=_low_speed(model, at_curves))
     second, discrepancy = _second(problem, motion)
-    ladder = Ladder(problem.misfit.value, (), motion, 0, complete=True)
-    differs = min(problem.misfit.value, math.inf if second is None else second.value) > allowed
-    if explain and (differs or abs(problem.frequency.factor - 1.0) > SAME):
-        ladder = climb(problem, limit=allowed, budget=seconds)
-    return Check(problem, allowed, second, discrepancy, ladder, _remarks(problem))
+    result = replace(
+        result,
+        problem=problem,
+        second=second,
+        discrepancy=discrepancy,
+        remarks=(*source.remarks, *_remarks(problem), *more),
+    )
+    if not explain or result.failed is None:
+        return result
+    return replace(result, ladder=climb(problem, limit=allowed, budget=seconds))
+
+
+def _of_values_over_speed(
+    pair: GearPair, theirs: ValuesOverSpeed, limit: float, progress: Callable[[float], None] | None
+) -> Check:
+    """Check of values over speed."""
+    return Check(
+        pair=pair,
+        name=theirs.name,
+        role=theirs.role,
+        limit=limit,
+        static=StaticRung(pair, ()),
+        low_speed=None,
+        problem=None,
+        over_speed=speed_misfit(theirs, pair, progress),
+        second=None,
+        discrepancy=math.nan,
+        ladder=None,
+        remarks=theirs.remarks,
+    )
+
+
+def _refined(model: OtherModel, pair: GearPair, channels: tuple[Any, ...]) -> Curves | None:
+    """Curves of a model that can halve its step, with the same channels. None: the model cannot."""
+    if not model.can_refine:
+        return None
+    refined = model.curves(pair, refine=2)
+    if isinstance(refined, ValuesOverSpeed):
+        return None
+    names = {channel.name for channel in channels}
+    return replace(refined, channels=tuple(channel for channel in refined.channels if channel.name in names))
+
+
+def _low_speed(model: OtherModel, pair: GearPair) -> Problem | None:
+    """The transmission error of a model that can be called, where the motion is nearly static.
+
+    None: the model fails there or gives no transmission error.
+    """
+    lowest = float(natural_frequencies(pair.healthy)[0])
+    rpm = 60.0 * _LOW * lowest / pair.pinion.teeth
+    slow = pair.with_({"operating.pinion_speed": f"{rpm!r} rpm"})
+    try:
+        curves = model.curves(slow)
+        if isinstance(curves, ValuesOverSpeed) or not curves.of_quantity("dte"):
+            return None
+        problem = Problem.of(slow, replace(curves, channels=curves.of_quantity("dte")), lumped_motion(slow))
+        return problem if np.isfinite(problem.misfit.value) else None
+    except (ValueError, NumericalError, ArithmeticError):
+        return None
+
+
+def _resolution_remarks(problem: Problem) -> tuple[str, ...]:
+    """Sentence on a model whose motion changes with half the step."""
+    if problem.refined is None:
+        return ()
+    other = Problem.of(problem.pair, problem.refined, problem.motion, problem.given_shift)
+    change = abs(other.misfit.value - problem.misfit.value)
+    if change <= _RESOLVED:
+        return ()
+    return (f"The step is too long: with half the step the misfit is {percent(other.misfit.value)}.",)
 
 
 def _second(problem: Problem, motion: MotionCurves) -> tuple[Misfit | None, float]:
@@ -168,20 +369,18 @@ def _second(problem: Problem, motion: MotionCurves) -> tuple[Misfit | None, floa
     if other is None:
         return None, math.nan
     misfit = problem.misfit_with(other)
-    names = [row.channel for row in problem.misfit.channels]
-    ours = tuple(
-        one._replace(orders=row.ours) for one, row in zip(names, problem.misfit.channels, strict=True)
-    )
+    rows = problem.misfit.channels
+    ours = tuple(row.channel._replace(orders=row.ours) for row in rows)
     return misfit, problem.misfit_with(other, ours).value
 
 
 def _remarks(problem: Problem) -> tuple[str, ...]:
-    """Sentences on the curves: not settled, means that were removed, few orders."""
+    """Sentences on the curves: not settled, means that were removed."""
     remarks = []
     change = problem.settled.change
     if change > _SETTLED:
         remarks.append(
-            f"The motion has not settled: the last cycles change by {100.0 * change:.2g} %. Run it longer."
+            f"The motion has not settled: the last cycles change by {percent(change)}. Run it longer."
         )
     removed = [
         row.channel.channel.name

@@ -36,6 +36,8 @@ _PER_NUMBER = 4
 _SAMPLES = 512
 #: An order times the period that is this close to a whole number is whole.
 _WHOLE = 1e-6
+#: Mesh cycles from which on a line and the mesh orders are told apart.
+_LINE_AND_ORDERS = 1.5
 #: Mesh cycles in a bin of the search for the coarse shift.
 BIN = 1.0 / 32.0
 
@@ -101,7 +103,12 @@ def compared_orders(
 
 
 def orders_of_channel(
-    channel: Channel, cycles: FloatArray, orders: FloatArray, motion: MotionCurves, shift: float
+    channel: Channel,
+    cycles: FloatArray,
+    orders: FloatArray,
+    motion: MotionCurves,
+    shift: float,
+    most_orders: int = MESH_ORDERS,
 ) -> ComplexOrders:
     """Return the complex orders of a channel.
 
@@ -113,6 +120,7 @@ def orders_of_channel(
     motion : motion of ours, which says when a tooth pair is in contact
     shift : mesh cycles from the moment when pair A was at A to mesh cycle 0 of the samples; only a channel of
         a tooth pair depends on it
+    most_orders : largest mesh order of a channel of a tooth pair
 
     Raises
     ------
@@ -120,7 +128,7 @@ def orders_of_channel(
     """
     if channel.tooth_pair is None:
         period = motion.mesh_cycles if orders.size and (orders % 1.0).any() else 1
-        values = channel.values if channel.kind.has_mean else _without_ramp(cycles, channel.values)
+        values = without_ramp(cycles, channel.values) if channel.kind.is_rotation else channel.values
         return complex_orders(cycles, values, orders, period=period)
     period = motion.ahead.size
     first = int(motion.ahead.min())
@@ -129,7 +137,7 @@ def orders_of_channel(
         raise refuse("recurrence", motion.recurrence, f">= {period}", action)
     since = motion.age(cycles + shift, channel.tooth_pair)
     inside = since < first + period
-    most = resolved_orders(cycles[inside], period)
+    most = resolved_orders(cycles[inside], period, most_orders)
     if most < 1:
         allowed = f"curves in which pair {channel.tooth_pair} is in contact for many samples"
         refused = f"{np.count_nonzero(inside)} samples in contact"
@@ -184,15 +192,22 @@ def coarse_shift(channels: Sequence[Channel], cycles: FloatArray, motion: Motion
     return float(total.argmax()) * BIN
 
 
-def _without_ramp(cycles: FloatArray, values: FloatArray) -> FloatArray:
-    """Values less the straight line between the means of the first and the last whole mesh cycle.
+def without_ramp(cycles: FloatArray, values: FloatArray) -> FloatArray:
+    """Return the values of a rotation less its constant speed.
 
-    A rotation that includes the nominal rotation is a ramp. A least-squares line would bend to the vibration.
+    The line is fitted together with the mesh orders, because a line alone would bend to the vibration. Curves
+    of about one mesh cycle cannot tell a line from the orders: there the line joins both ends, if the line
+    is most of the curve.
     """
-    whole = np.floor(cycles[-1] - cycles[0])
-    if whole < 2.0:
-        return values
-    first = cycles < cycles[0] + 1.0
-    last = cycles >= cycles[-1] - 1.0
-    rise = (values[last].mean() - values[first].mean()) / (cycles[last].mean() - cycles[first].mean())
-    return np.asarray(values - rise * (cycles - cycles[0]))
+    reach = max(float(np.ptp(cycles)), 1e-300)
+    if reach < _LINE_AND_ORDERS:
+        rise = (values[-1] - values[0]) / reach
+        rest = values - rise * (cycles - cycles[0])
+        rise = rise if abs(rise) * reach > float(np.ptp(rest)) else 0.0
+    else:
+        orders = np.arange(1.0, max(resolved_orders(cycles), 1) + 1.0)
+        angle = 2.0 * np.pi * np.multiply.outer(cycles, orders)
+        line = np.stack([np.ones(cycles.size), cycles - cycles.mean()], axis=1)
+        columns = np.hstack([line, np.cos(angle), np.sin(angle)])
+        rise = np.linalg.lstsq(columns, values - values.mean(), rcond=None)[0][1]
+    return np.asarray(values - float(rise) * (cycles - cycles[0]))

@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 
 from lumped.errors import refuse
+from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 from validation.check.quantities import PAIR_LABELS, QUANTITIES, Quantity
 
@@ -77,6 +78,7 @@ class Curves:
     recurrence : mesh cycles after which the same labelled tooth pair is in contact again; None: the teeth of
         the pinion
     statics : name in ``STATICS`` -> value in SI
+    remarks : sentences on how the source was read: units that were assumed, columns that were not used
     """
 
     name: str
@@ -88,6 +90,7 @@ class Curves:
     pinion_torque: float | None = None
     recurrence: int | None = None
     statics: Mapping[str, FloatArray] = field(default_factory=dict)
+    remarks: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         """Refuse samples that no comparison can use."""
@@ -105,6 +108,15 @@ class Curves:
             raise refuse(self.abscissa, refused, "increasing values", "Sort or cut the curves.")
         for channel in self.channels:
             _check(channel, self.places.size)
+
+    def at(self, pair: GearPair) -> GearPair:
+        """Return the pair at the stated speed and torque; what is not stated remains that of the pair."""
+        changes: dict[str, str] = {}
+        if self.pinion_speed is not None:
+            changes["operating.pinion_speed"] = f"{float(self.pinion_speed)!r} rad/s"
+        if self.pinion_torque is not None:
+            changes["operating.pinion_torque"] = f"{float(self.pinion_torque)!r} N*m"
+        return pair.with_(changes) if changes else pair
 
     def of_quantity(self, quantity: str) -> tuple[Channel, ...]:
         """Return the channels of a quantity."""
@@ -159,6 +171,7 @@ class ValuesOverSpeed:
     columns : values at these speeds
     role : "model" or "measurement"
     pinion_torque : stated pinion torque [N m]; None: not stated
+    remarks : sentences on how the source was read
     """
 
     name: str
@@ -166,3 +179,4 @@ class ValuesOverSpeed:
     columns: tuple[SpeedColumn, ...]
     role: Role = "model"
     pinion_torque: float | None = None
+    remarks: tuple[str, ...] = ()

@@ -30,9 +30,15 @@ _TRIALS = 4.0
 _SHORT = 64.0
 #: The orders must carry this share more at another frequency than at that of the pair.
 _BETTER = 1e-3
+#: Change over one mesh cycle, over the variance, of curves that repeat; and the least share of the change at
+#: another frequency that is no better.
+_REPEATS = 1e-4
+_REPEATS_BETTER = 0.25
 #: A mistaken speed or time must carry this share of the variation, and this many times as much as the pair's.
 _MOST = 0.5
 _TIMES = 4.0
+#: Another speed of a record is searched within this share of the stated speed.
+_FAR = 0.05
 #: Fewest mesh cycles that tell one frequency from another.
 _FEWEST = 1.5
 
@@ -91,7 +97,7 @@ def mesh_frequency(curves: Curves, pair: GearPair, *, mistakes: bool = True) -> 
     if curves.abscissa != "time" or carried is None:
         return Frequency(1.0, "")
     trials = mistaken_factors(pair) if mistakes else {}
-    near = carried.refined(1.0) if carried.reach >= _FEWEST else 1.0
+    near = carried.refined(1.0)
     at_pair = carried(near, carried.reach)
     best = Frequency(near, "")
     for cause, factor in trials.items():
@@ -103,6 +109,21 @@ def mesh_frequency(curves: Curves, pair: GearPair, *, mistakes: bool = True) -> 
         if most > _MOST and most > _TIMES * max(at_pair, 1e-3) and not _is_multiple(trial, best):
             best, at_pair = Frequency(trial, cause), most / _TIMES
     return best
+
+
+def shown_speed(curves: Curves, pair: GearPair) -> float | None:
+    """Return the speed that the samples show over that of the pair, where it differs by 0.5 to 5 %.
+
+    None: the mesh orders of the pair's own speed carry more than a quarter of what any other speed carries.
+    """
+    carried = _Carried.of(curves, pair)
+    if carried is None or curves.abscissa != "time":
+        return None
+    length = min(_SHORT, carried.reach)
+    other, _ = carried.strongest(1.0, _FAR, length)
+    near, _ = carried.strongest(1.0, SAME, length)
+    most = carried(other, length)
+    return other if most > _MOST and most > _TIMES * carried(near, length) else None
 
 
 def _is_multiple(trial: float, best: Frequency) -> bool:
@@ -152,12 +173,12 @@ class _Carried:
         """Return the factor near ``factor`` with the largest share, else ``factor`` itself."""
         reach = self.reach * factor
         if reach * SAME * _TRIALS < 0.5:
-            return factor
+            return self._repeating(factor) if reach >= _FEWEST else factor
         best = factor
         width = SAME * factor
         length = min(_SHORT, reach)
         while True:
-            best, width = self._strongest(best, width, length / factor)
+            best, width = self.strongest(best, width, length / factor)
             if length >= reach:
                 break
             length = min(4.0 * length, reach)
@@ -168,7 +189,27 @@ class _Carried:
         better = -float(fine.fun) > (1.0 + _BETTER) * self(factor, self.reach)
         return float(fine.x) if better else factor
 
-    def _strongest(self, about: float, width: float, length: float) -> tuple[float, float]:
+    def _repeating(self, factor: float) -> float:
+        """Return the factor near ``factor`` at which the curves repeat best; for curves of few mesh cycles.
+
+        In few cycles the first orders also gain by a wrong frequency that takes a part of higher orders.
+        """
+
+        def change(trial: float) -> float:
+            first = self.cycles <= self.cycles[-1] - 1.0 / trial
+            later = self.cycles[first] + 1.0 / trial
+            differences = [np.interp(later, self.cycles, row) - row[first] for row in self.values]
+            power = np.maximum(np.mean(self.values**2, axis=1), 1e-300)
+            return float(np.mean([np.mean(row**2) for row in differences] / power))
+
+        at_factor = change(factor)
+        if at_factor < _REPEATS:
+            return factor
+        ends = (factor * (1.0 - SAME), factor * (1.0 + SAME))
+        fine = minimize_scalar(change, bounds=ends, method="bounded", options={"xatol": 1e-6 * factor})
+        return float(fine.x) if float(fine.fun) < _REPEATS_BETTER * at_factor else factor
+
+    def strongest(self, about: float, width: float, length: float) -> tuple[float, float]:
         """Return the factor with the largest share, within ``about`` +- ``width``; then the step."""
         step = 1.0 / (_TRIALS * float(self.orders[-1]) * length)
         trials = about + step * np.arange(-np.floor(width / step), np.floor(width / step) + 1)

@@ -25,10 +25,13 @@ from validation.check.motion_curves import MotionCurves
 from validation.check.quantities import Quantity
 from validation.signals.complex_orders import LEAST, ComplexOrders, common_shift
 
-#: A mean below this share of our mean is a mean that an exporter or a sensor removed.
-_REMOVED = 1e-3
+#: Default limit of the misfit of curves that agree.
+LIMIT = 0.05
+#: A mean below this share of our mean is a mean that an exporter or a sensor removed. The mean of a record
+#: that is no whole number of cycles is not quite that of a cycle.
+_REMOVED = 0.05
 #: A mean of ours below this share of the static value says nothing about removed means.
-_SMALL = 1e-2
+_SMALL = 2e-3
 
 
 class ChannelMisfit(NamedTuple):
@@ -129,8 +132,7 @@ def misfit_of(
 
 def mean_is_removed(theirs: ChannelOrders, ours: ComplexOrders, static: float) -> bool:
     """Return whether the mean of a channel was removed by an export or a sensor: ours is not 0, theirs is."""
-    size = max(abs(ours.mean), _SMALL * static)
-    return abs(ours.mean) > _SMALL * static and abs(theirs.orders.mean) < _REMOVED * size
+    return _SMALL * static < abs(ours.mean) and abs(theirs.orders.mean) < _REMOVED * abs(ours.mean)
 
 
 def static_value(quantity: Quantity, motion: MotionCurves) -> float:

@@ -17,6 +17,9 @@ from validation.check.misfit import Misfit, misfit_of
 from validation.check.motion_curves import MotionCurves
 from validation.check.settled import Settled, settled
 
+#: Samples in a mesh cycle from which on high orders do not pass for low ones.
+_COARSE = 400.0
+
 
 @dataclass(frozen=True, eq=False)
 class Problem:
@@ -30,7 +33,7 @@ class Problem:
     frequency : mesh frequency of the curves over that of the pair, and what mistakes it
     given_shift : mesh cycles from the moment when pair A was at A to the first sample, where the user states
         them; None: the shift is searched
-    refined : the curves of the other model with half the step; None: the other model gives curves only
+    refined : curves of the same model with half the step; None: the model cannot be called so
     """
 
     pair: GearPair
@@ -119,10 +122,41 @@ class Problem:
 
         ``free_shift`` says whether the shift is searched although the user states it.
         """
-        return misfit_of(
+        misfit = misfit_of(
             self.theirs if theirs is None else theirs,
             motion,
             shift=None if free_shift else self.given_shift,
             near=self.coarse_shift,
             means=self.means,
         )
+        return misfit if self._fit is None else self._sampled_alike(misfit, motion, self._fit)
+
+    @cached_property
+    def _fit(self) -> FloatArray | None:
+        """(2m+1, k) matrix from samples to mean, real and imaginary parts of the orders, by least squares.
+
+        None: the curves have so many samples in a mesh cycle that high orders do not pass for low ones.
+        """
+        cycles = self.cycles[self.settled.used]
+        if cycles.size >= _COARSE * max(float(np.ptp(cycles)), 1e-300):
+            return None
+        angle = 2.0 * np.pi * np.multiply.outer(cycles, self.orders)
+        waves = np.hstack([np.ones((cycles.size, 1)), np.cos(angle), -np.sin(angle)])
+        return np.asarray(np.linalg.pinv(waves))
+
+    def _sampled_alike(self, misfit: Misfit, motion: MotionCurves, fit: FloatArray) -> Misfit:
+        """Misfit with our orders fitted to samples at the times of the curves, as theirs are.
+
+        In few samples a mesh cycle high orders pass for low ones, in our samples as in theirs.
+        """
+        cycles = self.cycles[self.settled.used] + misfit.shift
+        count = self.orders.size
+        channels = []
+        for row in misfit.channels:
+            channel = row.channel.channel
+            if channel.tooth_pair is None and row.ours.orders.size == count:
+                coefficients = fit @ motion.at(channel.quantity, cycles)
+                values = coefficients[1 : count + 1] + 1j * coefficients[count + 1 :]
+                row = row._replace(ours=replace(row.ours, values=values, mean=float(coefficients[0])))
+            channels.append(row)
+        return replace(misfit, channels=tuple(channels))

@@ -36,18 +36,23 @@ class Quantity:
     summed: bool = False
     has_mean: bool = True
 
+    @property
+    def is_rotation(self) -> bool:
+        """Whether the quantity is an angle, which another model may give with its nominal rotation."""
+        return self.unit == "rad"
+
 
 def _quantities() -> Iterator[Quantity]:
     """All quantities, the transmission error first."""
     motions = [
         Quantity("dte", "m", "transmission error", "dte"),
         *(
-            Quantity(f"theta_{end}", "rad", f"rotation of the {gear} about its nominal rotation",
+            Quantity(f"theta_{end}", "rad", f"{gear} rotation about the nominal one",
                      f"theta_{end}", has_mean=False)
             for end, gear in GEARS
         ),
         *(
-            Quantity(f"{axis}_{end}", "m", f"displacement of the {gear} {line}", f"{axis}_{end}")
+            Quantity(f"{axis}_{end}", "m", f"{gear} displacement {line}", f"{axis}_{end}")
             for axis, line in LINES for end, gear in GEARS
         ),
     ]  # fmt: skip
@@ -71,14 +76,14 @@ def _quantities() -> Iterator[Quantity]:
     for axis, line in LINES:
         for end, gear in GEARS:
             name = f"bearing_force_{axis}_{end}"
-            yield Quantity(name, "N", f"bearing force on the {gear} {line}", name)
+            yield Quantity(name, "N", f"bearing force on the {gear}, {line}", name)
     yield Quantity("mesh_torque_p", "N*m", "torque of the mesh against the pinion", "theta_p", derivative=2)
     yield Quantity("mesh_torque_g", "N*m", "torque of the mesh against the gear", "theta_g", derivative=2)
     yield Quantity("mesh_stiffness", "N/m", "mesh stiffness", "mesh_stiffness")
 
 
 GEARS = (("p", "pinion"), ("g", "gear"))
-LINES = (("x", "along the line of action"), ("y", "across the line of action"))
+LINES = (("x", "along the line of action"), ("y", "off the line of action"))
 #: Name -> quantity.
 QUANTITIES = {quantity.name: quantity for quantity in _quantities()}
 #: Labels of tooth pairs: B follows A one pitch later.

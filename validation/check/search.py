@@ -82,8 +82,8 @@ class Step(NamedTuple):
     def sentence(self) -> str:
         """The explanation in words."""
         if self.choice is not None:
-            return f"compatible with {self.choice.words}"
-        return f"compatible with {self.cause.words.format(value=f'{float(self.label):.4g}')}"
+            return f"Compatible with {self.choice.words}"
+        return f"Compatible with {self.cause.words.format(value=f'{float(self.label):.4g}')}"
 
     def of(self, variant: Variant) -> Variant:
         """Return the variant with this step."""

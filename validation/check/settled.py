@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from lumped.typing import BoolArray, FloatArray
+from validation.check.curve_orders import without_ramp
 from validation.check.curves import Channel, Curves
 from validation.signals.complex_orders import complex_orders
 
@@ -72,15 +73,28 @@ def _whole_cycles(cycles: FloatArray) -> int:
 def _change(channel: Channel, cycles: FloatArray, block: int) -> float:
     """Change of the orders of a channel from the last but one block of cycles to the last one."""
     end = cycles[-1]
+    values = without_ramp(cycles, channel.values) if channel.kind.is_rotation else channel.values
     orders = np.arange(1.0, _ORDERS + 1.0)
     fits = []
     for number in (2, 1):
         inside = (cycles > end - number * block + 1e-9) & (cycles <= end - (number - 1) * block + 1e-9)
-        fits.append(complex_orders(cycles[inside], channel.values[inside], orders))
+        fits.append(complex_orders(cycles[inside], values[inside], orders))
     before, after = fits
     size = max(before.size, after.size)
     if size <= 0.0:
         return 0.0
-    noise = float(np.sqrt(np.trace(before.covariance) + np.trace(after.covariance)))
+    # A complex amplitude of n samples with white noise has the variance 4 noise^2/n.
+    samples = block * values.size / max(float(np.ptp(cycles)), 1e-300)
+    noise = white_noise(values) * np.sqrt(2.0 * _ORDERS * 4.0 / samples)
     difference = float(np.linalg.norm(after.values - before.values))
     return difference / size if difference > _NOISE * noise else 0.0
+
+
+def white_noise(values: FloatArray) -> float:
+    """Return the standard deviation of white noise on a smooth curve, by its third differences.
+
+    The median is blind to the few samples at jumps. A third difference of white noise has 20 times its
+    variance, and the median of the size of a normal number is 0.6745 of its standard deviation.
+    """
+    differences = np.abs(np.diff(values, 3))
+    return float(np.median(differences)) / (0.6745 * np.sqrt(20.0)) if differences.size else 0.0

@@ -8,14 +8,10 @@ from .results import write_results as write_results
 from .results import write_state_space as write_state_space
 from .rexs.exporting import write_rexs as write_rexs
 from .rexs.importing import gear_pair_from_rexs as gear_pair_from_rexs
-from .ross import compare_matrices as compare_matrices
-from .ross import compare_ross as compare_ross
 
 __all__ = [
     "FILE_AXES",
     "SecondOrderModel",
-    "compare_matrices",
-    "compare_ross",
     "gear_pair_from_rexs",
     "new_pair",
     "parameter_text",

@@ -5,11 +5,7 @@ Sources: docs/how_to/any_system.md.
 
 from __future__ import annotations
 
-import io
-import math
 import re
-import subprocess
-import sys
 import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -17,7 +13,6 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-import scipy.io
 
 from floquet import FourierSeries, PeriodicMatrix, PiecewisePolynomial, SecondOrderSystem, from_second_order
 from floquet.engine.chart import ChartAxis
@@ -25,6 +20,7 @@ from floquet.engine.coefficients import Coefficient, square
 from lumped.arguments import file_path, nearest, real_array, real_number, real_numbers
 from lumped.errors import ParameterError, refuse, shown
 from lumped.typing import FloatArray
+from validation.files.matlab import check_size, matlab_arrays
 
 MATRIX_SUFFIXES = (".npz", ".mat")
 FILE_AXES: Mapping[str, ChartAxis] = {
@@ -34,18 +30,6 @@ FILE_AXES: Mapping[str, ChartAxis] = {
 }
 """Axes of a chart of a file."""
 
-#: Most bytes that the arrays of a file may take: matrices of some thousand states.
-_MOST_BYTES = 500_000_000
-#: Program that reads a MATLAB file. It runs in a second process, because one wrong byte can end the process.
-#: Sparse matrices become full.
-_READER = """
-import io, sys, numpy, scipy.io
-content = io.BytesIO()
-arrays = {name: value for name, value in scipy.io.loadmat(sys.argv[1]).items() if name[0] != "_"}
-full = {name: value.toarray() if hasattr(value, "toarray") else value for name, value in arrays.items()}
-numpy.savez(content, **full)
-sys.stdout.buffer.write(content.getbuffer())
-"""
 _HARMONIC = re.compile(r"([CK])_(cos|sin)_([1-9]\d{0,2})")
 _NAMES = ("M", "C", "G", "K", "period", "K_cos_1", "K_sin_1", "K_times", "K_values", "C_cos_1", "C_sin_1",
           "C_times", "C_values")  # fmt: skip
@@ -128,7 +112,7 @@ def read_second_order(path: str | Path) -> SecondOrderModel:
 
     Parameters
     ----------
-    path : .npz or .mat (up to MATLAB 7) with
+    path : .npz or .mat with
 
         - ``M``, ``K`` (n, n) and ``period`` [s]; optional ``C``; optional ``G``: G times 2 pi/period is added
           to C. If the period is one turn, G is the gyroscopic matrix
@@ -160,29 +144,18 @@ def _fields(path: Path) -> dict[str, Any]:
     try:
         return _arrays(path)
     except Exception as error:  # noqa: BLE001  (readers raise anything of a damaged file)
-        allowed = "a .npz of arrays or a .mat up to version 7"
+        allowed = "a .npz of arrays or a .mat of arrays"
         raise refuse("path", path, allowed, f"{advice} ({shown(str(error), 120)})") from None
 
 
 def _arrays(path: Path) -> dict[str, Any]:
     """Read the arrays of a file."""
-    if path.suffix.lower() == ".npz":
-        with zipfile.ZipFile(path) as archive:
-            _check_size(sum(member.file_size for member in archive.infolist()))
-        with np.load(path, allow_pickle=False) as file:
-            return dict(file)
-    _check_size(sum(8 * math.prod(shape) for _, shape, _ in scipy.io.whosmat(path)))
-    run = subprocess.run([sys.executable, "-P", "-c", _READER, path], capture_output=True, check=False)
-    if run.returncode:
-        *_, last_line = run.stderr.decode(errors="replace").strip().split("\n")
-        raise ValueError(last_line or "it is damaged")
-    with np.load(io.BytesIO(run.stdout), allow_pickle=False) as file:
+    if path.suffix.lower() == ".mat":
+        return dict(matlab_arrays(path))
+    with zipfile.ZipFile(path) as archive:
+        check_size(sum(member.file_size for member in archive.infolist()))
+    with np.load(path, allow_pickle=False) as file:
         return dict(file)
-
-
-def _check_size(wanted: int) -> None:
-    if wanted > _MOST_BYTES:  # a small file can unfold to gigabytes
-        raise ValueError(f"it claims to hold {wanted:.3g} bytes")
 
 
 def _model(fields: dict[str, Any], *, matlab: bool) -> SecondOrderModel:

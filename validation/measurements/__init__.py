@@ -1,24 +1,5 @@
-"""Measured records beside predictions, and the friction identified from them."""
+"""The description of a measured record, and its samples."""
 
-from validation.measurements.channel_comparison import ChannelComparison, PeakToPeak, Record
-from validation.measurements.comparing import compare_record
-from validation.measurements.comparison import Prediction, predict
-from validation.measurements.identification import Evaluation, Identification, evaluate
 from validation.measurements.record import Measurement, MeasurementSpec, load_measurement
-from validation.measurements.record_comparison import RecordComparison
 
-__all__ = [
-    "ChannelComparison",
-    "Evaluation",
-    "Identification",
-    "Measurement",
-    "MeasurementSpec",
-    "PeakToPeak",
-    "Prediction",
-    "Record",
-    "RecordComparison",
-    "compare_record",
-    "evaluate",
-    "load_measurement",
-    "predict",
-]
+__all__ = ["Measurement", "MeasurementSpec", "load_measurement"]

@@ -20,6 +20,8 @@ from lumped.fields.text_file import parse_toml, read_text
 from lumped.fields.units import Quantity, to_si
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
+from validation.check.curves import Channel as CurveChannel
+from validation.check.curves import Curves
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -133,6 +135,23 @@ class Measurement:
     abscissa: FloatArray
     channels: dict[str, FloatArray]
     noise: dict[str, float | None]
+
+    def curves(self) -> Curves:
+        """Return the record in the form of every comparison."""
+        channels = tuple(
+            CurveChannel(c.name, c.quantity, self.channels[c.name], c.pair, self.noise[c.name])
+            for c in self.spec.channel
+        )
+        return Curves(
+            name=self.spec.name,
+            abscissa="time",
+            places=self.abscissa,
+            channels=channels,
+            role="measurement",
+            pinion_speed=self.spec.pinion_speed,
+            pinion_torque=self.spec.pinion_torque,
+            recurrence=self.spec.recurrence,
+        )
 
     def at(self, pair: GearPair) -> GearPair:
         """Return the pair at the speed and the torque of the record."""

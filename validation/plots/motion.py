@@ -86,7 +86,8 @@ def sweep_figure(sweep: xr.Dataset, operating_rpm: float, static_load: float) ->
 
 
 def overlay_figure(points: xr.Dataset) -> Figure:
-    """Draw ``points`` of an Evaluation: measured means with their scatter, and the prediction."""
+    """Draw their curves and ours over the mesh phase: their means with their scatter, and our motion."""
+    name_of_theirs = "record" if points.attrs["role"] == "measurement" else "your model"
     names = [str(name) for name in points["channel"].to_numpy()]
     columns = min(len(names), 2)
     rows = -(-len(names) // columns)
@@ -96,15 +97,13 @@ def overlay_figure(points: xr.Dataset) -> Figure:
         ax.set_visible(False)
     for ax, name in zip(panels, names, strict=False):
         one = points.sel(channel=name)
-        x, measured, predicted, scatter = (
-            one[key].to_numpy() for key in ("phase", "measured", "predicted", "scatter")
-        )
-        factor = scale_y(ax, name, str(one["units"].item()), measured, predicted)
-        edges = (measured - scatter) / factor, (measured + scatter) / factor
+        x, theirs, ours, scatter = (one[key].to_numpy() for key in ("phase", "theirs", "ours", "scatter"))
+        factor = scale_y(ax, name, str(one["units"].item()), theirs, ours)
+        edges = (theirs - scatter) / factor, (theirs + scatter) / factor
         ax.fill_between(x, *edges, color=RED, alpha=0.2, linewidth=0)
         dots: dict[str, Any] = {"marker": "o", "markersize": 2.4, "linestyle": "none"}
-        ax.plot(x, measured / factor, color=RED, **dots, label="measured")
-        ax.plot(x, predicted / factor, color=BLUE, linewidth=1.2, label="predicted")
+        ax.plot(x, theirs / factor, color=RED, **dots, label=name_of_theirs)
+        ax.plot(x, ours / factor, color=BLUE, linewidth=1.2, label="spurcheck")
         ax.axhline(0.0, color=GREY, linewidth=0.6)
         ax.set(xlim=(0.0, float(np.ceil(10 * x[-1]) / 10)), xlabel="mesh cycles since the pair was at A")
     legend_outside(figure, panels[0].get_legend_handles_labels()[0], 2)

@@ -86,7 +86,7 @@ _FIGURES: dict[str, Callable[[xr.Dataset], Figure]] = {
     "contact_kept": jump_map_figure,
     "running_speed": lambda result: _waterfall(waterfall(result)),
     "branch": response_figure,
-    "measured": overlay_figure,
+    "theirs": overlay_figure,
     "dte": lambda result: history_figure(_pair(result).geometry, result),
     "dte_peak_to_peak": _sweep,
     "mesh_frequency": lambda result: campbell_figure(
@@ -121,7 +121,7 @@ def plot(result: Any, *, ax: Axes | None = None, labels: Sequence[str] = ()) -> 
         ``waterfall``, ``order_spectrum``, ``speed_sweep``, ``mesh_stiffness``, ``static_transmission_error``,
         ``static_sharing``, ``stability_chart`` (one or two axes), ``stability_boundaries`` over an axis,
         ``campbell``, ``jump_map`` or
-        ``response_branches``, or the ``points`` of an evaluated record. A list of results of one kind over
+        ``response_branches``, or an ``overlay`` of a check. A list of results of one kind over
         time, phase or speed: their transmission errors, mesh stiffnesses or spectral radii
     ax : axes of yours to draw this curve into
     labels : of the results, for the legend; default the names of their pairs

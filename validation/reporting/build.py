@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import json
 import time
 import warnings
@@ -21,13 +20,12 @@ from lumped.labelling import source_hash
 from lumped.model.periodic_system import Supports, with_supports
 from lumped.outcomes import Absent, Outcome
 from lumped.typing import Progress
+from validation.check.record.channel_comparison import Record
+from validation.check.record.comparing import check_record
+from validation.check.record.record_comparison import RecordComparison
 from validation.files.folder import FORMAT, FORMAT_VERSION, whole_folder
 from validation.files.output import write_dataset
-from validation.measurements.channel_comparison import Record
 from validation.measurements.record import load_measurement
-from validation.measurements.record_comparison import RecordComparison
-from validation.measurements.record_orders import check_record
-from validation.plots.style import save
 from validation.reporting.blocks import Picture, Table, chapter_data, plain
 from validation.reporting.chapter import Chapter, Written
 from validation.reporting.chapters import CHAPTERS
@@ -39,6 +37,7 @@ from validation.reporting.gate import TOLERANCE, Comparison, load_report
 from validation.reporting.gate import compare as compare_reports
 from validation.reporting.page import render
 from validation.reporting.page_one import PageOne, page_one, title
+from validation.reporting.pictures import draw_pictures
 from validation.reporting.relations import failed_checks
 from validation.reporting.results import Results
 from validation.reporting.tables import write_tables
@@ -118,7 +117,7 @@ def report(
     target = file_path("out", out)
     earlier = None if compare is None else load_report(compare, quick=quick)
     real_number("--tolerance", tolerance, 0.0, 1.0, action="0.001 lets numbers change by 0.1 %.")
-    measured = None if record is None else load_measurement(record)
+    measured = None if record is None else load_measurement(record).curves()
     if measured is not None:
         check_record(measured, gear_pair)  # refused before any work
     with whole_folder(target, force=force) as folder, warnings.catch_warnings():
@@ -134,7 +133,7 @@ def report(
         pictures = first_figures(results)
         blocks = [block for _, content in chapters for block in content.blocks]
         every = (*pictures, *(block for block in blocks if isinstance(block, Picture)))
-        images = _draw(every, folder / "figures", lambda f, stage="", /: tell(0.85 + 0.12 * f, stage))
+        images = draw_pictures(every, folder / "figures", lambda share: tell(0.85 + 0.12 * share, "figures"))
         tell(0.97, "data")
         _write_data(results, folder / "data")
         (folder / "tables").mkdir()
@@ -229,18 +228,6 @@ def _number(number: Number) -> dict[str, Any]:
     }
     words = {"label": number.label, "unit": number.unit, "note": number.note, "scope": number.scope}
     return words | sizes
-
-
-def _draw(pictures: Sequence[Picture], folder: Path, progress: Progress) -> dict[str, str]:
-    """Draw the pictures. Returns key of a picture -> data URI of the file."""
-    folder.mkdir()
-    images = {}
-    for count, picture in enumerate(pictures):
-        progress(count / len(pictures), "figures")
-        path = folder / f"{picture.key}.svg"
-        save(picture.figure(), path, new=True)
-        images[picture.key] = "data:image/svg+xml;base64," + base64.b64encode(path.read_bytes()).decode()
-    return images
 
 
 def _write_data(results: Results, folder: Path) -> None:

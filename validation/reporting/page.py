@@ -46,7 +46,7 @@ def render(
         for count, block in enumerate((b for b in shown if isinstance(b, kind)), start)
     }
     return (
-        _environment()
+        environment()
         .get_template("report.html")
         .render(
             first=first,
@@ -67,23 +67,24 @@ def limits() -> list[str]:
 
 
 @lru_cache(maxsize=1)
-def _environment() -> jinja2.Environment:
-    environment = jinja2.Environment(
+def environment() -> jinja2.Environment:
+    """Return the templates, with the filters for blocks."""
+    templates = jinja2.Environment(
         loader=jinja2.PackageLoader("validation", "templates"),
         autoescape=True,
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters |= {
+    templates.filters |= {
         "shown_rows": shown_rows,
         "prose": prose,
         "id": id,
         "kind": lambda block: type(block).__name__,
         "numeric_columns": _numeric_columns,
     }
-    environment.tests |= {"badge": lambda value: isinstance(value, Badge), "numeric": _is_numeric}
-    return environment
+    templates.tests |= {"badge": lambda value: isinstance(value, Badge), "numeric": _is_numeric}
+    return templates
 
 
 def _is_numeric(value: object) -> bool:

@@ -8,8 +8,8 @@ from enum import Enum
 from typing import NamedTuple
 
 from floquet.gear.response import Jump
+from validation.check.record.channel_comparison import Record
 from validation.files.formatting import number, quantity
-from validation.measurements.channel_comparison import Record
 from validation.prediction.motion import Prediction
 from validation.prediction.resonance import Resonance
 from validation.reporting.facts import Fact, rpm, spread_words

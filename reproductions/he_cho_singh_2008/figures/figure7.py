@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
-from lumped import GearPair
+from lumped import GearPair, steady_state
 from lumped.labelling import Variable, labelled_dataset
 from lumped.model.steady import UNSTABLE
 from reproductions.he_cho_singh_2008.operating_points import FIGURE_7, OperatingPoint
@@ -21,9 +21,11 @@ from reproductions.he_cho_singh_2008.twins import (
     roll_angle,
     twins,
 )
-from validation.measurements import Measurement, predict
-from validation.measurements.comparison import align, overlay
-from validation.measurements.record import PAIR_LABELS
+from validation.check.curves import Curves
+from validation.check.motion_curves import MotionCurves
+from validation.check.overlay import overlay
+from validation.check.problem import Problem
+from validation.check.quantities import PAIR_LABELS
 
 LAW = "xu_kahraman"
 _CYCLES = 3
@@ -66,31 +68,34 @@ def pair_forces(pair: GearPair, point: OperatingPoint, *, with_multibody: bool =
     )
 
 
-def measured_points(pair: GearPair, measurement: Measurement, *, bins: int = 48) -> xr.Dataset:
+def measured_points(pair: GearPair, record: Curves, *, bins: int = 48) -> xr.Dataset:
     """A record of tooth-pair forces laid over law III at its operating point: bins and metrics by channel.
 
     Parameters
     ----------
     pair : the gear pair
-    measurement : the record
+    record : the record
     bins : points per passage
     """
-    spec = measurement.spec
-    prediction = predict(measurement.at(pair.with_({"friction.law": LAW})), recurrence=spec.recurrence)
-    phase = align(measurement, prediction)
-    points = overlay(measurement, prediction, phase, bins=bins)
-    points["quantity"] = ("channel", [c.quantity for c in spec.channel])
-    points["label"] = ("channel", [c.pair or "" for c in spec.channel])
+    at_record = record.at(pair.with_({"friction.law": LAW}))
+    again = record.recurrence or pair.pinion.teeth
+    motion = MotionCurves(at_record, steady_state(at_record, samples_per_cycle=1024), 1, again)
+    problem = Problem.of(at_record, record, motion)
+    points = overlay(problem, bins=bins)
+    points["quantity"] = ("channel", [channel.quantity for channel in record.channels])
+    points["label"] = ("channel", [channel.tooth_pair or "" for channel in record.channels])
     # Pair B follows A by one mesh cycle, C by two.
-    delay = [PAIR_LABELS.index(c.pair) if c.pair else 0 for c in spec.channel]
+    delay = [PAIR_LABELS.index(channel.tooth_pair or "A") for channel in record.channels]
     points["cycles"] = points["phase"] + xr.DataArray(delay, dims="channel")
     return points.assign_attrs(
-        speed_rpm=spec.pinion_speed * 30.0 / math.pi, torque=spec.pinion_torque, shift=phase.shift
+        speed_rpm=at_record.operating.pinion_speed * 30.0 / math.pi,
+        torque=at_record.operating.pinion_torque,
+        shift=problem.misfit.shift,
     )
 
 
 def figure7(
-    pair: GearPair, measurements: Sequence[Measurement] = (), *, with_multibody: bool = True
+    pair: GearPair, measurements: Sequence[Curves] = (), *, with_multibody: bool = True
 ) -> FigureRecord:
     """Figure 7 with its data and numbers.
 
@@ -125,9 +130,7 @@ def figure7(
         data[f"measured{j + 1}"] = points
         for channel in points["channel"].to_numpy():
             relative = 100 * float(points["relative_rms"].sel(channel=channel))
-            numbers[f"{measurement.spec.name}, {channel}: rms of measured - predicted"] = Number(
-                relative, SPAN
-            )
+            numbers[f"{measurement.name}, {channel}: rms of measured - predicted"] = Number(relative, SPAN)
     return FigureRecord(
         number="7",
         title="Normal load and friction force per tooth pair, law III",

@@ -14,7 +14,8 @@ from floquet import monodromy
 from lumped.errors import ParameterError
 from tests.evidence.floquet.reference_systems import meissner_trace
 from tests.validation.commands.conftest import run
-from validation.exchange import matrices, read_second_order
+from validation.exchange import read_second_order
+from validation.files import matlab
 
 T = 0.4
 M = np.diag([1.0, 2.0])
@@ -85,7 +86,7 @@ def test_a_small_file_does_not_fill_the_memory(tmp_path, suffix):
 
 def test_a_file_that_ends_its_reader_is_refused(tmp_path, monkeypatch):
     # As scipy ends with some .mat files of which one byte is wrong.
-    monkeypatch.setattr(matrices, "_READER", "import os, signal\nos.kill(os.getpid(), signal.SIGSEGV)")
+    monkeypatch.setattr(matlab, "_READER", "import os, signal\nos.kill(os.getpid(), signal.SIGSEGV)")
     scipy.io.savemat(tmp_path / "rotor.mat", FIELDS)
     with pytest.raises(ParameterError, match="damaged"):
         read_second_order(tmp_path / "rotor.mat")

@@ -8,9 +8,9 @@ import pandas as pd
 import pytest
 import xarray as xr
 
-from tests.validation.measurements.dynamic_records import dynamic_record
+from tests.validation.records.dynamic_records import dynamic_record
+from validation.check.record.channel_comparison import Record
 from validation.exchange.new_pair_file import new_pair
-from validation.measurements.channel_comparison import Record
 from validation.prediction.motion import predicted
 from validation.prediction.uncertainty import sampled_predictions, uncertainty
 from validation.reporting.blocks import Picture, Quantity, Table, Text, chapter_data

@@ -14,7 +14,7 @@ import numpy as np
 import xarray as xr
 
 from lumped.labelling import labelled_dataset
-from validation.measurements.channel_comparison import ChannelComparison, PeakToPeak, Record, apart_words
+from validation.check.record.channel_comparison import ChannelComparison, PeakToPeak, Record, apart_words
 
 #: Unit attribute of a variable whose channels differ in their unit: each channel is in its SI unit, which the
 #: variable ``units`` of the dataset names.
@@ -29,7 +29,7 @@ class RecordComparison:
     ----------
     name : name of the record
     channels : comparison of each channel, the transmission error first where it is measured
-    shift : mesh cycles from the moment when pair A was at A to time 0 of the record
+    shift : mesh cycles from the moment when pair A was at A to the first sample of the record
     varied : whether the inputs were varied
     mesh_cycles : mesh cycles in the period of the prediction; their mean is compared
     """

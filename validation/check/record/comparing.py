@@ -15,33 +15,40 @@ from typing import NamedTuple
 
 import numpy as np
 
+from lumped.errors import refuse
+from lumped.fields.units import to_stated
+from lumped.schema.pair import GearPair
 from lumped.typing import BoolArray, ComplexArray, FloatArray
-from validation.measurements.channel_comparison import (
+from validation.check.curve_orders import (
+    BIN,
+    coarse_shift,
+    orders_of_channel,
+    orders_of_motion,
+    resolved_orders,
+)
+from validation.check.curves import Channel, Curves
+from validation.check.mesh_frequency import mesh_frequency, nominal_cycles, shown_speed
+from validation.check.motion_curves import MotionCurves
+from validation.check.record.channel_comparison import (
     NOT_VARIED,
     SHARE,
     ChannelComparison,
     PeakToPeak,
     noise_factor,
 )
-from validation.measurements.comparison import Prediction as Curves
-from validation.measurements.record import QUANTITIES, Channel, Measurement
-from validation.measurements.record_comparison import RecordComparison
-from validation.measurements.record_orders import (
-    BIN,
-    check_record,
-    coarse_shift,
-    cycles_in_step,
-    mean_mesh_cycle,
-    measured_orders,
-    predicted_orders,
-)
+from validation.check.record.record_comparison import RecordComparison
 from validation.prediction.motion import Prediction
 from validation.prediction.uncertainty import Varied
 from validation.signals.complex_orders import ComplexOrders, channel_scale, common_shift
 
+#: Most mesh orders of a record.
+_ORDERS = 40
+#: Largest difference of speed and torque between record and pair, as a share.
+_SAME = 0.01
+
 
 def compare_record(
-    measurement: Measurement,
+    record: Curves,
     prediction: Prediction,
     *,
     numerical: float = 0.0,
@@ -52,35 +59,35 @@ def compare_record(
 
     Parameters
     ----------
-    measurement : the record, at the speed and torque of the prediction's pair
+    record : the record, at the speed and torque of the prediction's pair
     prediction : motion from ``validation.prediction.motion.predict``
     numerical : standard uncertainty of every predicted amplitude by the numerics, as a share of the amplitude
     varied : predictions with varied inputs, from ``sampled_predictions``; None: the inputs were not varied
-    shift : mesh cycles from the moment when pair A was at A to time 0 of the record; default: the shift with
-        the best correlation. All channels have the same shift
+    shift : mesh cycles from the moment when pair A was at A to the first sample of the record; default: the
+        shift with the best correlation. All channels have the same shift
 
     Raises
     ------
     ParameterError : a record of another speed or torque, or of too few samples
     """
-    check_record(measurement, prediction.pair)
-    spec = measurement.spec
-    channels = sorted(spec.channel, key=lambda channel: channel.quantity != "dte")  # the first leads
-    curves = mean_mesh_cycle(prediction, spec.recurrence)
-    cycles = cycles_in_step(measurement, prediction.pair)
-    first_shift = coarse_shift(measurement, cycles, curves, channels) if shift is None else shift
-    signals = _common_orders(measurement, curves, channels, cycles, first_shift)
+    check_record(record, prediction.pair)
+    channels = sorted(record.channels, key=lambda channel: channel.quantity != "dte")  # the first leads
+    motion = mean_motion(prediction, record.recurrence)
+    factor = mesh_frequency(record, prediction.pair, mistakes=False).factor
+    cycles = factor * nominal_cycles(record, prediction.pair)
+    first_shift = coarse_shift(channels, cycles, motion) if shift is None else shift
+    signals = _common_orders(motion, channels, cycles, first_shift)
     scales = [
         channel_scale(signal.measured.size, signal.predicted.size, _static_value(prediction, channel))
         for channel, signal in zip(channels, signals, strict=True)
     ]
     if shift is None:
         # With a channel of one tooth pair the coarse shift is right to a bin, else any shift is possible.
-        near = (first_shift, 2.0 * BIN) if any(channel.pair for channel in channels) else None
+        near = (first_shift, 2.0 * BIN) if any(channel.tooth_pair for channel in channels) else None
         measured = [signal.measured for signal in signals]
         predicted = [signal.predicted for signal in signals]
         shift = common_shift(measured, predicted, scales, near=near)
-    moves = None if varied is None else _moves(varied, channels, signals, scales, spec.recurrence)
+    moves = None if varied is None else _moves(varied, channels, signals, scales, record.recurrence)
     compared = sum(signal.resolved.orders.size for signal in signals)
     comparisons = []
     for j, (channel, signal) in enumerate(zip(channels, signals, strict=True)):
@@ -90,8 +97,8 @@ def compare_record(
             ChannelComparison(
                 name=channel.name,
                 quantity=channel.quantity,
-                unit=QUANTITIES[channel.quantity][0],
-                words=str(prediction.cycle[channel.quantity].attrs.get("long_name", channel.quantity)),
+                unit=channel.kind.unit,
+                words=channel.kind.words,
                 measured=signal.measured,
                 predicted=in_phase,
                 by_inputs=_covariance_by_inputs(in_phase, scales[j], move, shift),
@@ -102,7 +109,38 @@ def compare_record(
                 varied=varied is not None,
             )
         )
-    return RecordComparison(spec.name, tuple(comparisons), shift, varied is not None, prediction.mesh_cycles)
+    return RecordComparison(
+        record.name, tuple(comparisons), shift, varied is not None, prediction.mesh_cycles
+    )
+
+
+def check_record(record: Curves, pair: GearPair) -> None:
+    """Refuse a record with another speed or torque than the pair, or with too few samples.
+
+    The stated speed is compared, and the speed that the mesh orders of the samples show.
+    """
+    for name, recorded in (("pinion_speed", record.pinion_speed), ("pinion_torque", record.pinion_torque)):
+        operating = float(getattr(pair.operating, name))
+        if recorded is not None and abs(recorded / operating - 1.0) > _SAME:
+            action = "Give the speed and the torque of the record to the pair."
+            raise refuse(f"record.{name}", f"{recorded:.5g}", f"{operating:.5g} within 1 %, SI", action)
+    if resolved_orders(nominal_cycles(record, pair)) < 1:
+        refused = f"{record.places.size} samples"
+        raise refuse("data", refused, "several in each mesh cycle", "Sample faster, or longer.")
+    shown = shown_speed(record, pair)
+    if shown is not None:
+        stated = to_stated(pair.operating.pinion_speed, "rpm")
+        raise refuse(
+            "record.pinion_speed", f"{stated:.5g} rpm",
+            f"the speed of the samples, whose mesh orders are those of about {stated * shown:.4g} rpm",
+            "Correct the speed in the description.",
+        )  # fmt: skip
+
+
+def mean_motion(prediction: Prediction, recurrence: int | None = None) -> MotionCurves:
+    """Return the motion averaged over the mesh cycles of its period."""
+    again = recurrence or prediction.pair.pinion.teeth
+    return MotionCurves(prediction.pair, prediction.cycle, prediction.mesh_cycles, again).mean_cycle()
 
 
 class _Signals(NamedTuple):
@@ -122,24 +160,21 @@ class _Signals(NamedTuple):
 
 
 def _common_orders(
-    measurement: Measurement,
-    curves: Curves,
+    motion: MotionCurves,
     channels: Sequence[Channel],
     cycles: FloatArray,
     shift: float,
 ) -> list[_Signals]:
     """Orders of record and prediction, channel by channel.
 
-    ``curves``: predicted motion over the mesh cycle; ``cycles``: mesh cycle of each sample of the record.
+    ``motion``: predicted motion over the mesh cycle; ``cycles``: mesh cycle of each sample of the record.
     """
-    resolved = [
-        measured_orders(measurement.channels[channel.name], cycles, curves, channel, shift)
-        for channel in channels
-    ]
-    compared = sum(orders.orders.size for orders in resolved)
+    orders = np.arange(1.0, resolved_orders(cycles, most=_ORDERS) + 1.0)
+    resolved = [orders_of_channel(channel, cycles, orders, motion, shift, _ORDERS) for channel in channels]
+    compared = sum(measured.orders.size for measured in resolved)
     signals = []
     for channel, measured in zip(channels, resolved, strict=True):
-        predicted = predicted_orders(curves, channel, measured)
+        predicted = orders_of_motion(motion, channel, measured)
         above_noise = _above_noise(measured, predicted, compared)
         signals.append(
             _Signals(measured, above_noise, measured.only(above_noise), predicted.only(above_noise))
@@ -164,7 +199,7 @@ def _above_noise(measured: ComplexOrders, predicted: ComplexOrders, compared: in
 
 def _static_value(prediction: Prediction, channel: Channel) -> float:
     """Static value that bounds the scale of a channel from below: mesh force [N] or mean deflection [m]."""
-    if QUANTITIES[channel.quantity][0] == "N":
+    if channel.kind.unit == "N":
         return prediction.static_force
     return abs(float(prediction.cycle["dte"].mean()))
 
@@ -192,9 +227,9 @@ def _moves(
     """Change of each channel with the inputs, less the change of the phase that all channels share."""
 
     def orders_of(prediction: Prediction) -> list[ComplexOrders]:
-        curves = mean_mesh_cycle(prediction, recurrence)
+        motion = mean_motion(prediction, recurrence)
         return [
-            predicted_orders(curves, channel, signal.resolved).only(signal.above_noise)
+            orders_of_motion(motion, channel, signal.resolved).only(signal.above_noise)
             for channel, signal in zip(channels, signals, strict=True)
         ]
 

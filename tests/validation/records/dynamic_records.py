@@ -5,7 +5,8 @@ They read the motion by an interpolation of their own, not by what reads it in t
 
 import numpy as np
 
-from validation.measurements.record import QUANTITIES, Measurement, MeasurementSpec
+from validation.check.curves import Channel, Curves
+from validation.check.quantities import QUANTITIES
 
 
 def motion(prediction, quantity, cycles):
@@ -42,20 +43,20 @@ def dynamic_record(
     """
     rng = np.random.default_rng(seed)
     u = np.arange(int(cycles * per_cycle)) / per_cycle + phase
-    channels = {}
-    entries = []
+    channels = []
     for quantity in quantities:
         values = motion(prediction, quantity, u)
         values = values if change is None else change(quantity, values, u)
-        channels[quantity] = values + noise * np.ptp(values) * rng.normal(size=u.size)
-        entry = {"name": quantity, "column": quantity, "quantity": quantity, "unit": QUANTITIES[quantity][0]}
-        entries.append(entry | ({"pair": "A"} if QUANTITIES[quantity][1] else {}))
-    own = prediction.pair.operating
-    given = {
-        "name": "made", "source": f"computed, seed {seed}", "data": "made.csv",
-        "pinion_speed": repr(own.pinion_speed), "pinion_torque": own.pinion_torque,
-        "abscissa": {"kind": "time", "column": "time", "unit": "s"}, "channel": entries,
-    }  # fmt: skip
-    described = MeasurementSpec.model_validate(given | spec)
-    time = (u - phase) * prediction.pair.geometry.mesh_period
-    return Measurement(described, time, channels, dict.fromkeys(quantities))
+        measured = values + noise * np.ptp(values) * rng.normal(size=u.size)
+        tooth_pair = "A" if QUANTITIES[quantity].of_tooth_pair else None
+        channels.append(Channel(quantity, quantity, measured, tooth_pair))
+    operating = prediction.pair.operating
+    stated = {"pinion_speed": operating.pinion_speed, "pinion_torque": operating.pinion_torque}
+    return Curves(
+        name="made",
+        abscissa="time",
+        places=(u - phase) * prediction.pair.geometry.mesh_period,
+        channels=tuple(channels),
+        role="measurement",
+        **(stated | spec),
+    )

@@ -9,9 +9,8 @@ import pytest
 import lumped
 from lumped.errors import ParameterError
 from tests.unlike_pairs import unlike_pair
-from tests.validation.measurements.dynamic_records import dynamic_record, motion
-from validation.exchange.new_pair_file import new_pair
-from validation.measurements.channel_comparison import (
+from tests.validation.records.dynamic_records import dynamic_record, motion
+from validation.check.record.channel_comparison import (
     NOT_VARIED,
     SHARE,
     UNKNOWN,
@@ -19,7 +18,8 @@ from validation.measurements.channel_comparison import (
     PeakToPeak,
     Record,
 )
-from validation.measurements.comparing import compare_record
+from validation.check.record.comparing import compare_record
+from validation.exchange.new_pair_file import new_pair
 from validation.prediction.motion import predicted
 from validation.prediction.uncertainty import Varied
 from validation.signals.complex_orders import ComplexOrders
@@ -286,7 +286,7 @@ def test_a_speed_stated_a_little_wrong_is_found(name):
     prediction = motion_of(name)
     made = dynamic_record(prediction, SEVERAL, cycles=800)
     for off in (-0.003, 0.0008):
-        found = compare_record(dataclasses.replace(made, abscissa=made.abscissa / (1.0 + off)), prediction)
+        found = compare_record(dataclasses.replace(made, places=made.places / (1.0 + off)), prediction)
         assert found.verdict is Record.CONFIRMS, found.words
 
 
@@ -294,13 +294,13 @@ def test_a_speed_stated_a_little_wrong_is_found(name):
 def test_samples_of_another_speed_are_refused_with_that_speed(off):
     prediction = motion_of("19/41")
     made = dynamic_record(prediction, SEVERAL)
-    wrong = dataclasses.replace(made, abscissa=made.abscissa / (1.0 + off))
+    wrong = dataclasses.replace(made, places=made.places / (1.0 + off))
     with pytest.raises(ParameterError, match=f"about {str(1450 * (1 + off))[:3]}"):
         compare_record(wrong, prediction)
 
 
 @pytest.mark.parametrize(("changes", "match"), [
-    ({"pinion_speed": "3000 rpm"}, "pinion_speed"),
+    ({"pinion_speed": 314.2}, "pinion_speed"),
     ({"pinion_torque": 81.7}, "pinion_torque"),
 ])  # fmt: skip
 def test_a_record_of_something_else_is_refused(changes, match):

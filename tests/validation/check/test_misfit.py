@@ -1,0 +1,131 @@
+"""Is the misfit 0 for equal motions in any phase, and does it see what a peak to peak does not?"""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from tests.unlike_pairs import unlike_pair
+from tests.validation.check.curves_of_motions import sampled
+from validation.check.curves import Channel, Curves
+from validation.check.mesh_frequency import mesh_frequency
+from validation.check.problem import Problem
+from validation.check.reference import lumped_motion
+
+SEVERAL = ("dte", "x_p", "y_g", "mesh_force", "bearing_force_y_p")
+NAMES = (
+    "rack_25_degrees_always_pushing",
+    "larger_gear_drives_contact_lost",
+    "contact_ratio_1_1_large_shifts",
+    "heavily_relieved_under_load",
+    "contact_ratio_2_3_on_shafts",
+)
+
+
+@pytest.fixture(scope="module", params=NAMES)
+def pair(request):
+    return unlike_pair(request.param)
+
+
+def problem(pair, **settings):
+    return Problem.of(
+        pair, sampled(pair, settings.pop("quantities", SEVERAL), **settings), lumped_motion(pair)
+    )
+
+
+def test_equal_motions_have_no_misfit_in_any_phase(pair):
+    for phase, per_cycle in ((0.37, 201.7), (0.81, 64.0), (0.0, 510.0)):
+        one = problem(pair, phase=phase, per_cycle=per_cycle)
+        # Both are read linearly between 512 samples a cycle. In 64 samples high orders move the shift.
+        assert one.misfit.value < 5e-3
+        assert one.misfit.shift == pytest.approx(phase, abs=1e-3) or phase == 0.0
+        assert one.settled.change == 0.0 or one.settled.change < 1e-3
+
+
+def test_one_percent_of_noise_is_no_difference(pair):
+    assert problem(pair, noise=0.01, cycles=12).misfit.value < 0.01
+
+
+def test_a_motion_at_rest_has_a_misfit_of_one(pair):
+    still = problem(pair, change=lambda name, values, time: np.full_like(values, values.mean()))
+    assert [row.motion for row in still.misfit.channels] == pytest.approx(len(SEVERAL) * [1.0], abs=0.02)
+
+
+def test_a_channel_of_the_wrong_sign_has_a_misfit_of_two(pair):
+    flipped = problem(pair, change=lambda name, values, time: -values if name == "x_p" else values)
+    by_name = {row.channel.channel.name: row.motion for row in flipped.misfit.channels}
+    assert by_name["x_p"] == pytest.approx(2.0, abs=0.4)  # the common shift gives way a little
+    sizes = [row.channel.orders.peak_to_peak / row.ours.peak_to_peak for row in flipped.misfit.channels]
+    assert sizes == pytest.approx(len(SEVERAL) * [1.0], abs=0.05)  # no peak to peak shows it
+
+
+def test_the_same_size_of_another_motion_differs(pair):
+    def third_order(name, values, time):
+        wave = np.sin(6.0 * np.pi * time / pair.geometry.mesh_period)
+        return values.mean() + 0.5 * np.ptp(values) * wave
+
+    other = problem(pair, quantities=("dte", "x_p"), change=third_order)
+    assert other.misfit.value > 0.3
+    rows = other.misfit.channels
+    assert [row.channel.orders.peak_to_peak / row.ours.peak_to_peak for row in rows] == pytest.approx(
+        len(rows) * [1.0], rel=0.08
+    )
+
+
+def test_order_and_subset_of_channels(pair):
+    one = problem(pair.with_(torque=0.8 * pair.operating.pinion_torque))
+    turned = dataclasses.replace(one.curves, channels=one.curves.channels[::-1])
+    other = Problem.of(pair, turned, one.motion)
+    assert other.misfit.value == pytest.approx(one.misfit.value, rel=1e-6)
+    rows = {row.channel.channel.name: row.total for row in one.misfit.channels}
+    single = Problem.of(pair, dataclasses.replace(one.curves, channels=one.curves.channels[:1]), one.motion)
+    assert single.misfit.channels[0].total <= rows["dte"] + 1e-3  # its own shift is free
+
+
+def test_a_mean_that_an_export_removed_is_not_compared(pair):
+    removed = problem(pair, change=lambda name, values, time: values - values.mean())
+    assert removed.misfit.value < 5e-3
+    assert not any(row.compares_mean for row in removed.misfit.channels if row.channel.channel.name == "dte")
+    shifted = problem(pair, change=lambda name, values, time: values + 0.1 * values.mean())
+    by_name = {row.channel.channel.name: row.mean for row in shifted.misfit.channels}
+    assert by_name["dte"] == pytest.approx(0.1, rel=0.05)
+
+
+@pytest.mark.parametrize(("factor", "cause"), [
+    (1e-3, "times are in milliseconds"), (1.0, ""), (1.003, ""),
+])  # fmt: skip
+def test_the_mesh_frequency_of_the_samples(pair, factor, cause):
+    curves = sampled(pair, ("dte", "x_p"), cycles=20)
+    scaled = dataclasses.replace(curves, places=curves.places / factor)
+    frequency = mesh_frequency(scaled, pair)
+    assert frequency.cause == cause
+    assert frequency.factor == pytest.approx(factor, rel=3e-4)  # a phase of 0.006 after 20 cycles
+
+
+def test_a_rotation_with_its_nominal_part_is_a_ramp(pair):
+    speed = pair.operating.pinion_speed
+    turned = problem(pair, quantities=("theta_p",), change=lambda name, values, time: values + speed * time)
+    assert turned.misfit.value < 5e-3
+
+
+def test_a_motion_that_has_not_settled_is_seen(pair):
+    def decaying(name, values, time):
+        period = pair.geometry.mesh_period
+        return values + 0.5 * np.ptp(values) * np.exp(-time / (4.0 * period)) * np.cos(12.3 * time / period)
+
+    assert problem(pair, change=decaying, cycles=8).settled.change > 0.02
+    assert problem(pair, change=decaying, cycles=60).settled.change < 0.005
+
+
+def test_rates_and_accelerations_are_those_of_the_motion(pair):
+    time_step = pair.geometry.mesh_period / 512
+    one = problem(pair, quantities=("dte",), per_cycle=512.0, phase=0.0)
+    values = one.curves.channels[0].values
+    rate = (np.roll(values, -1) - np.roll(values, 1)) / (2.0 * time_step)  # central differences
+    channel = Channel("rate", "dte_dot", rate)
+    inside = slice(512, -512)
+    curves = Curves(
+        "other", "time", one.curves.places[inside],
+        (dataclasses.replace(channel, values=rate[inside]),),
+    )  # fmt: skip
+    assert Problem.of(pair, curves, one.motion).misfit.value < 0.01

@@ -1,0 +1,144 @@
+"""spurcheck check: curves of another model, or a record, beside both programs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from validation.commands import options as opt
+from validation.commands.terminal import guarded, note, print_json, progress_bar, show, stdout
+
+if TYPE_CHECKING:
+    from validation.check.check import Check
+
+#: Exit code where the curves do not agree.
+_DIFFERS = 4
+
+Theirs = Annotated[
+    str | None,
+    typer.Argument(
+        metavar="THEIRS",
+        help="Curves of the other model: .csv, .xlsx, .mat, .nc, .npz, a .toml that describes a record, "
+        ".fmu, or model.py:function.",
+        show_default=False,
+    ),
+]
+
+
+@guarded
+def check(
+    pair: opt.Pair,
+    theirs: Theirs = None,
+    output: Annotated[Path | None, opt.output("Folder of the page to write, new or empty.")] = None,
+    limit: str = "5%",
+    explain: Annotated[
+        bool, typer.Option("--explain/--no-explain", help="Search what would explain a difference.")
+    ] = True,
+    budget: float = 60.0,
+    phase: float | None = None,
+    supports: opt.Supports = None,
+    as_json: opt.Json = False,
+    force: opt.ForceFolder = False,
+) -> None:
+    """Say whether a model of your own is right, and if not, what in it may be wrong.
+
+    The curves of your model, or of a record, are compared with both programs: first what does not move, then
+    the transmission error at low speed, then the motion, channel by channel. Where they differ, named changes
+    are tried until the difference is gone. The exit code is 0 if the curves agree, 4 if they do not.
+
+    Columns bear the names of results: time, dte, x_p, mesh_force, bearing_force_x_p; a unit stands in
+    brackets.
+
+    [bold]Examples[/bold]
+    spurcheck check mypair.toml theirs.csv
+    spurcheck check mypair.toml theirs.mat -o check --limit 3%
+    spurcheck check mypair.toml my_model.py:simulate --speed 1450
+
+    Parameters
+    ----------
+    limit : Misfit up to which the curves agree.
+    budget : Processor time of the search for explanations, in seconds.
+    phase : Mesh cycles from pair A at point A to the first sample; default: by correlation.
+    """
+    from lumped.errors import refuse
+    from validation.check import check as run
+    from validation.files.folder import check_target
+
+    if theirs is None:
+        action = "For example: spurcheck check mypair.toml theirs.csv."
+        raise refuse("THEIRS", "missing", "the curves of your model", action)
+    if output is not None:
+        check_target(output, force=force)
+    with progress_bar("check") as tell:
+        result = run(
+            pair,
+            theirs,
+            limit=opt.number_in("--limit", limit, "1"),
+            explain=explain,
+            budget=budget,
+            phase=phase,
+            supports=supports,
+            progress=lambda share: tell(share),
+        )
+    if as_json:
+        print_json(_as_json(result))
+    else:
+        _show(result)
+    for remark in result.remarks:
+        note(remark)
+    if output is not None:
+        from validation.reporting.check_page import write_check
+
+        folder = write_check(result, output, force=force)
+        stdout().print(f"page: {folder / 'index.html'}")
+    if not result.agrees:
+        raise typer.Exit(_DIFFERS)
+
+
+def _show(result: Check) -> None:
+    """Print the verdict, the channels, and the steps of the ladder."""
+    from validation.check.words import percent
+    from validation.files.formatting import quantity
+
+    console = stdout()
+    console.print(result.words, style="bold")
+    if result.problem is not None:
+        rows = [
+            (
+                row.channel.channel.name,
+                quantity(row.channel.orders.peak_to_peak, row.channel.channel.kind.unit, 4),
+                quantity(row.ours.peak_to_peak, row.channel.channel.kind.unit, 4),
+                percent(row.total),
+                "agrees" if row.total <= result.limit else "differs",
+            )
+            for row in result.problem.misfit.channels
+        ]
+        show("", "channel | >theirs, peak to peak | >spurcheck | >misfit | ", rows)
+    if result.static.rows:
+        rows = [
+            (
+                row.name,
+                quantity(row.theirs, row.unit, 4),
+                quantity(row.ours, row.unit, 4),
+                f"{100.0 * row.difference:.2g} %",
+                "agrees" if row.agrees else "differs",
+            )
+            for row in result.static.rows
+        ]
+        show("", "static quantity | >theirs | >spurcheck | >difference | ", rows)
+    if result.ladder is not None and result.explanations:
+        steps = [("", "spurcheck as the parameter file says", percent(result.ladder.start))]
+        for number, step in enumerate(result.explanations, start=1):
+            steps.append((str(number), step.sentence, percent(step.misfit)))
+            steps += [("", f"or: {other.sentence}", percent(other.misfit)) for other in step.alternatives]
+        show("", "step | compatible with | >misfit then", steps)
+
+
+def _as_json(result: Check) -> dict[str, Any]:
+    """The numbers of a check."""
+    from validation.reporting.check_content import parts_of
+    from validation.reporting.check_page import document
+
+    return document(result, parts_of(result))

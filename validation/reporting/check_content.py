@@ -1,0 +1,302 @@
+"""Chapters of a check: static quantities, channels and orders, explanations, values over speed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from validation.check.check import Check, Rung
+from validation.check.ladder import Ladder
+from validation.check.ladder_data import ladder_data
+from validation.check.misfit import ChannelMisfit
+from validation.check.overlay import figure_data
+from validation.check.problem import Problem
+from validation.check.static import StaticRow
+from validation.check.words import percent, static_words, subject
+from validation.plots.check import ladder_figure, motion_figure, speed_figure
+from validation.reporting.blocks import (
+    Badge,
+    Block,
+    Cell,
+    Column,
+    Content,
+    Picture,
+    Quantity,
+    Table,
+    Text,
+    table_of,
+)
+
+#: Orders of a channel in the table, the largest first.
+_MOST_ORDERS = 6
+#: Most things to look at first.
+_MOST_FIRST = 4
+
+
+class CheckPart(NamedTuple):
+    """A chapter of a check: anchor, title and content."""
+
+    anchor: str
+    title: str
+    content: Content
+
+
+def parts_of(check: Check) -> tuple[CheckPart, ...]:
+    """Return the chapters of a check, without those that have nothing to show."""
+    parts: list[CheckPart] = []
+    if check.static.rows:
+        parts.append(CheckPart("static", "Before anything moves", static_content(check)))
+    if check.low_speed is not None:
+        parts.append(CheckPart("low_speed", "At low speed", _low_speed_content(check)))
+    if check.problem is not None:
+        parts.append(CheckPart("motion", "The motion", motion_content(check)))
+    if check.ladder is not None:
+        assert check.problem is not None
+        content = ladder_content(check.problem, check.ladder, check.limit)
+        parts.append(CheckPart("explanations", "What would explain it", content))
+    if check.over_speed is not None:
+        parts.append(CheckPart("over_speed", "Over speed", _speed_content(check)))
+    return tuple(parts)
+
+
+def look_first(check: Check) -> tuple[str, ...]:
+    """Return what to look at first, the most important first; empty where the check agrees."""
+    if check.failed is None:
+        return ()
+    texts = [f"{static_words(row)}." for row in check.static.wrong[:2]]
+    for step in check.explanations:
+        texts.append(f"{step.sentence}.")
+        if step.alternatives:
+            others = "; ".join(other.sentence for other in step.alternatives[:3])
+            texts[-1] += f" The curves do not tell this from: {others}."
+    return tuple(texts[:_MOST_FIRST])
+
+
+def static_content(check: Check) -> Content:
+    """Write the chapter of the static quantities."""
+    rung = check.static
+    words = (
+        "Every static quantity agrees."
+        if rung.agrees
+        else f"{len(rung.wrong)} of {len(rung.rows)} differ, which explains differences of the motion."
+    )
+    table = table_of(
+        "static",
+        "Static quantities of both models.",
+        rung.rows,
+        (
+            Column[StaticRow]("quantity", "quantity", lambda row: row.name),
+            Column[StaticRow]("theirs", "theirs", lambda row: Quantity(row.theirs, row.unit)),
+            Column[StaticRow]("ours", "spurcheck", lambda row: Quantity(row.ours, row.unit)),
+            Column[StaticRow](
+                "difference", "theirs over ours, less 1 [%]", lambda row: _rounded(100.0 * row.difference)
+            ),
+            Column[StaticRow]("limit", "limit [%]", lambda row: _rounded(100.0 * row.limit)),
+            Column[StaticRow](
+                "verdict", "", lambda row: Badge("agrees") if row.agrees else Badge("violated", "differs")
+            ),
+        ),
+    )
+    return Content(words, (table,))
+
+
+def _low_speed_content(check: Check) -> Content:
+    """Write the chapter of the nearly static motion."""
+    problem = check.low_speed
+    assert problem is not None
+    rpm = problem.pair.operating.pinion_speed * 30.0 / math.pi
+    size = percent(problem.misfit.value)
+    words = f"At {rpm:.0f} rpm, where the motion is nearly static, the transmission error differs by {size}."
+    picture = Picture("low_speed", "Both motions at low speed.", figure_data(problem), motion_figure)
+    return Content(words, (picture,))
+
+
+def motion_content(check: Check) -> Content:
+    """Write the chapter of the channels: tables of sizes and orders, and the overlay of both motions."""
+    assert check.problem is not None
+    rows = check.problem.misfit.channels
+    second = "" if math.isnan(check.discrepancy) else (
+        f" Both programs of spurcheck differ by {percent(check.discrepancy)} here."
+    )  # fmt: skip
+    picture = Picture(
+        "motion",
+        "Both motions over the mesh phase, and their mesh orders. Bands: scatter of the samples.",
+        figure_data(check.problem),
+        motion_figure,
+    )
+    shift = f"All channels have the same shift in time, {check.problem.misfit.shift:.4f} mesh cycles."
+    blocks: tuple[Block, ...] = (picture, _channel_table(check, rows), _orders_table(rows), Text(shift))
+    return Content(f"Misfit {percent(check.misfit)}, limit {percent(check.limit)}.{second}", blocks)
+
+
+def _channel_table(check: Check, rows: Sequence[ChannelMisfit]) -> Table:
+    """Sizes, means and misfit of each channel."""
+    second = {} if check.second is None else {row.channel.channel.name: row for row in check.second.channels}
+
+    def against_second(row: ChannelMisfit) -> Cell:
+        other = second.get(row.channel.channel.name)
+        return None if other is None else _rounded(100.0 * other.total)
+
+    def quantity_of(row: ChannelMisfit, value: float) -> Quantity:
+        return Quantity(value, row.channel.channel.kind.unit)
+
+    return table_of(
+        "channels",
+        "Channels: peak to peak, mean and misfit.",
+        rows,
+        (
+            Column[ChannelMisfit]("channel", "channel", lambda row: row.channel.channel.name),
+            Column[ChannelMisfit]("quantity", "quantity", lambda row: row.channel.channel.kind.words),
+            Column[ChannelMisfit](
+                "theirs",
+                "theirs, peak to peak",
+                lambda row: quantity_of(row, row.channel.orders.peak_to_peak),
+            ),
+            Column[ChannelMisfit](
+                "ours", "spurcheck, peak to peak", lambda row: quantity_of(row, row.ours.peak_to_peak)
+            ),
+            Column[ChannelMisfit](
+                "their_mean",
+                "their mean",
+                lambda row: quantity_of(row, row.channel.orders.mean) if row.compares_mean else None,
+            ),
+            Column[ChannelMisfit](
+                "our_mean",
+                "our mean",
+                lambda row: quantity_of(row, row.ours.mean) if row.compares_mean else None,
+            ),
+            Column[ChannelMisfit]("misfit", "misfit [%]", lambda row: _rounded(100.0 * row.total)),
+            Column[ChannelMisfit]("second", "against the multibody model [%]", against_second),
+            Column[ChannelMisfit](
+                "verdict",
+                "",
+                lambda row: Badge("agrees") if row.total <= check.limit else Badge("violated", "differs"),
+            ),
+        ),
+        note="A mean is compared where the quantity has one and no export removed it.",
+    )
+
+
+class _OrderRow(NamedTuple):
+    """A row of the table of orders: place ``j`` of an order in the orders of a channel."""
+
+    row: ChannelMisfit
+    j: int
+
+
+def _orders_table(rows: Sequence[ChannelMisfit]) -> Table:
+    """The largest orders of every channel, in both models."""
+    items = []
+    for row in rows:
+        sizes = [
+            max(one, other)
+            for one, other in zip(row.channel.orders.amplitudes, row.ours.amplitudes, strict=True)
+        ]
+        largest = sorted(range(len(sizes)), key=lambda j: -sizes[j])[:_MOST_ORDERS]
+        items += [_OrderRow(row, j) for j in sorted(largest)]
+
+    def degrees(item: _OrderRow) -> float | None:
+        product = item.row.ours.values[item.j] * item.row.channel.orders.values[item.j].conjugate()
+        small = 1e-3 * item.row.scale
+        if min(item.row.ours.amplitudes[item.j], item.row.channel.orders.amplitudes[item.j]) < small:
+            return None
+        return _rounded(math.degrees(math.atan2(product.imag, product.real)))
+
+    def unit(item: _OrderRow) -> str:
+        return item.row.channel.channel.kind.unit
+
+    return table_of(
+        "orders",
+        f"The {_MOST_ORDERS} largest mesh orders of each channel.",
+        items,
+        (
+            Column[_OrderRow]("channel", "channel", lambda item: item.row.channel.channel.name),
+            Column[_OrderRow]("order", "mesh order", lambda item: float(item.row.ours.orders[item.j])),
+            Column[_OrderRow](
+                "theirs",
+                "theirs",
+                lambda item: Quantity(float(item.row.channel.orders.amplitudes[item.j]), unit(item)),
+            ),
+            Column[_OrderRow](
+                "ours",
+                "spurcheck",
+                lambda item: Quantity(float(item.row.ours.amplitudes[item.j]), unit(item)),
+            ),
+            Column[_OrderRow]("phase", "phase, ours less theirs [degrees]", degrees),
+        ),
+    )
+
+
+class _StepRow(NamedTuple):
+    """A row of the table of explanations."""
+
+    step: str
+    sentence: str
+    factor: float | str
+    misfit: float
+
+
+def ladder_content(problem: Problem, ladder: Ladder, limit: float) -> Content:
+    """Write the explanations of a misfit: bars that fall, and what the curves do not tell apart."""
+    who = subject(problem.curves.role)
+    if not ladder.steps:
+        words = "No named explanation makes the difference much smaller."
+        return Content(words, (Text(f"{ladder.runs} motions were computed."),))
+    last = ladder.steps[-1].misfit
+    count = f"{len(ladder.steps)} {'change brings' if len(ladder.steps) == 1 else 'changes bring'}"
+    words = (
+        f"{count} the misfit from "
+        f"{percent(ladder.start)} to {percent(last)}. {who} is compatible with them; they are not proven."
+    )
+    if not ladder.complete:
+        words += " The search was ended by its budget: --budget gives it more seconds."
+    items = []
+    for number, step in enumerate(ladder.steps, start=1):
+        items.append(_StepRow(str(number), step.sentence, step.factor, step.misfit))
+        items += [_StepRow("", f"or: {a.sentence}", a.factor, a.misfit) for a in step.alternatives]
+    table = table_of(
+        "explanations",
+        "Steps of the search, and what the curves do not tell apart from each step.",
+        items,
+        (
+            Column[_StepRow]("step", "step", lambda item: item.step),
+            Column[_StepRow]("explanation", "compatible with", lambda item: item.sentence),
+            Column[_StepRow](
+                "value",
+                "value",
+                lambda item: item.factor if isinstance(item.factor, str) else _rounded(item.factor),
+            ),
+            Column[_StepRow]("misfit", "misfit then [%]", lambda item: _rounded(100.0 * item.misfit)),
+        ),
+    )
+    picture = Picture(
+        "explanations",
+        "The misfit after each step. Dashed: the limit.",
+        ladder_data(problem, ladder, limit),
+        ladder_figure,
+    )
+    return Content(words, (picture, table, Text(f"{ladder.runs} motions were computed.")))
+
+
+def _speed_content(check: Check) -> Content:
+    """Write the chapter of the values over speed."""
+    assert check.over_speed is not None
+    rpm = check.over_speed.worst_speed * 30.0 / math.pi
+    words = f"Misfit {percent(check.misfit)}, limit {percent(check.limit)}; most at {rpm:.0f} rpm."
+    picture = Picture("over_speed", "Values over speed.", check.over_speed.table, speed_figure)
+    return Content(words, (picture,))
+
+
+#: What a failing rung is called in the headline.
+RUNG_WORDS = {
+    Rung.STATIC: "before anything moves",
+    Rung.LOW_SPEED: "at low speed",
+    Rung.MOTION: "in its motion",
+    Rung.OVER_SPEED: "over speed",
+}
+
+
+def _rounded(value: float, digits: int = 3) -> float | None:
+    """Value rounded to some digits; None for a value that is not finite."""
+    return float(f"{value:.{digits}g}") if math.isfinite(value) else None
