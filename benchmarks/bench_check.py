@@ -130,8 +130,11 @@ class ForeignModel:
         c = 2.0 * pair.mesh.damping_ratio * self.damping * np.sqrt(k * effective)
         if self.damper != "pair":
             mean = whole.mean()
-            of_mesh = 2.0 * pair.mesh.damping_ratio * np.sqrt(effective / mean) * (
-                mean if self.damper == "constant" else whole
+            of_mesh = (
+                2.0
+                * pair.mesh.damping_ratio
+                * np.sqrt(effective / mean)
+                * (mean if self.damper == "constant" else whole)
             )
             c = k / whole[:, None] * np.broadcast_to(of_mesh, whole.shape)[:, None]
         mu = self.mu * float(pair.friction.coefficient or 0.0) * np.sign(xi - g.L_XP)
@@ -153,7 +156,7 @@ class ForeignModel:
         )
         kb = kb * self.bearing
         cb = 2.0 * zb * self.bearing_damping * np.sqrt(kb * mass4)
-        # Coordinates q = r_p theta_p - r_g theta_g, x_p, x_g, y_p, y_g; a normal load N acts with friction mu N.
+        # Coordinates q = r_p theta_p - r_g theta_g, x_p, x_g, y_p, y_g. A load N acts with friction mu N.
         shape = np.array([1.0, 1.0, -1.0, 0.0, 0.0])
         arms = np.stack([xi * self.moment[0], (g.L_XY - xi) * self.moment[1]])
         q_force = -(radii**2 / inertia).sum() - mu * (
@@ -272,8 +275,16 @@ def cases() -> Iterator[Case]:
     stiff = ("mesh stiffness",)
     yield Case("stiffness 1.2", replace(sound, stiffness=lambda xi, k: 1.2 * k), (stiff,))
     yield Case("stiffness 0.7", replace(sound, stiffness=lambda xi, k: 0.7 * k), (stiff,))
-    yield Case("series stiffness", replace(sound, stiffness=lambda xi, k: 2.0 * k), (("series stiffness of both teeth",),))
-    yield Case("constant stiffness", replace(sound, total=lambda k: np.full_like(k, k.mean())), (("stiffness over the mesh cycle",),))
+    yield Case(
+        "series stiffness",
+        replace(sound, stiffness=lambda xi, k: 2.0 * k),
+        (("series stiffness of both teeth",),),
+    )
+    yield Case(
+        "constant stiffness",
+        replace(sound, total=lambda k: np.full_like(k, k.mean())),
+        (("stiffness over the mesh cycle",),),
+    )
     yield Case("mesh damping 3", replace(sound, damping=3.0), (("mesh damping",),))
     yield Case("no mesh damping", replace(sound, damping=0.0), (("mesh damping left out",),))
     yield Case("constant damper", replace(sound, damper="constant"), (("damper law",),))
@@ -290,29 +301,84 @@ def cases() -> Iterator[Case]:
     yield Case("density 0.7", replace(sound, inertia=(0.7, 0.7), mass=(0.7, 0.7)), (("density",),))
     yield Case("mass of the pinion 2", replace(sound, mass=(2.0, 1.0)), (("mass of the pinion", "mass"),))
     yield Case("bearings 0.5", replace(sound, bearing=(0.5,) * 4), (("bearing stiffness",),))
-    yield Case("bearings across 5", replace(sound, bearing=(1.0, 1.0, 5.0, 5.0)), (("bearing stiffness across the line of action",),))
+    yield Case(
+        "bearings across 5",
+        replace(sound, bearing=(1.0, 1.0, 5.0, 5.0)),
+        (("bearing stiffness across the line of action",),),
+    )
     yield Case("bearing damping 4", replace(sound, bearing_damping=(4.0,) * 4), (("bearing damping",),))
-    yield Case("no bearing damping", replace(sound, bearing_damping=(0.0,) * 4), (("bearing damping left out",),))
+    yield Case(
+        "no bearing damping", replace(sound, bearing_damping=(0.0,) * 4), (("bearing damping left out",),)
+    )
     yield Case("pitch radius", replace(sound, radius=1.0 / np.cos(np.radians(20.0))), (("pitch radius",),))
-    yield Case("rigid bearings", replace(sound, bearing=(1e4,) * 4), (("supports",),), ("dte", "mesh_force", "bearing_force_x_p"))
+    yield Case(
+        "rigid bearings",
+        replace(sound, bearing=(1e4,) * 4),
+        (("supports",),),
+        ("dte", "mesh_force", "bearing_force_x_p"),
+    )
     yield Case("sign of y_g", replace(sound, scale={"y_g": -1.0}), (("sign of a channel",),))
-    yield Case("bearing forces reversed", replace(sound, scale={"bearing_force_x_p": -1.0, "bearing_force_y_g": -1.0}), (("sign of a channel",),))
+    yield Case(
+        "bearing forces reversed",
+        replace(sound, scale={"bearing_force_x_p": -1.0, "bearing_force_y_g": -1.0}),
+        (("sign of a channel",),),
+    )
     yield Case("x_p in mm", replace(sound, scale={"x_p": 1e3}), (("unit of a channel",),))
-    yield Case("all lengths in um", replace(sound, scale={n: 1e6 for n in CHANNELS[:5]}), (("unit of a channel",),), CHANNELS[:5])
+    yield Case(
+        "all lengths in um",
+        replace(sound, scale=dict.fromkeys(CHANNELS[:5], 1000000.0)),
+        (("unit of a channel",),),
+        CHANNELS[:5],
+    )
     yield Case("dte late by 0.08", replace(sound, delay={"dte": 0.08}), (("delay of a channel",),))
     yield Case("x_p and y_p swapped", replace(sound, swap=(("x_p", "y_p"),)), (("channels swapped",),))
-    yield Case("x_p and x_g swapped", replace(sound, swap=(("x_p", "x_g"),)), (("channels swapped", "sign of a channel"),))
-    yield Case("stiffness 1.2 and friction sign", replace(sound, stiffness=lambda xi, k: 1.2 * k, mu=-1.0), (stiff, ("friction sign",)))
-    yield Case("sign of y_g, stiffness 0.7", replace(sound, scale={"y_g": -1.0}, stiffness=lambda xi, k: 0.7 * k), (("sign of a channel",), stiff))
-    yield Case("no friction, bearings 2", replace(sound, mu=0.0, bearing=(2.0,) * 4), (("friction left out",), ("bearing stiffness",)))
-    yield Case("damping 0.3, inertia m r^2", replace(sound, damping=0.3, inertia=(2.0, 2.0)), (("mesh damping",), ("inertia by m r^2",)))
-    yield Case("torque 0.6, x_p in mm", replace(sound, torque=0.6, scale={"x_p": 1e3}), (("torque",), ("unit of a channel",)))
-    yield Case("density 1.4, stiffness 1.3", replace(sound, inertia=(1.4, 1.4), mass=(1.4, 1.4), stiffness=lambda xi, k: 1.3 * k), (("density",), stiff))
+    yield Case(
+        "x_p and x_g swapped",
+        replace(sound, swap=(("x_p", "x_g"),)),
+        (("channels swapped", "sign of a channel"),),
+    )
+    yield Case(
+        "stiffness 1.2 and friction sign",
+        replace(sound, stiffness=lambda xi, k: 1.2 * k, mu=-1.0),
+        (stiff, ("friction sign",)),
+    )
+    yield Case(
+        "sign of y_g, stiffness 0.7",
+        replace(sound, scale={"y_g": -1.0}, stiffness=lambda xi, k: 0.7 * k),
+        (("sign of a channel",), stiff),
+    )
+    yield Case(
+        "no friction, bearings 2",
+        replace(sound, mu=0.0, bearing=(2.0,) * 4),
+        (("friction left out",), ("bearing stiffness",)),
+    )
+    yield Case(
+        "damping 0.3, inertia m r^2",
+        replace(sound, damping=0.3, inertia=(2.0, 2.0)),
+        (("mesh damping",), ("inertia by m r^2",)),
+    )
+    yield Case(
+        "torque 0.6, x_p in mm",
+        replace(sound, torque=0.6, scale={"x_p": 1e3}),
+        (("torque",), ("unit of a channel",)),
+    )
+    yield Case(
+        "density 1.4, stiffness 1.3",
+        replace(sound, inertia=(1.4, 1.4), mass=(1.4, 1.4), stiffness=lambda xi, k: 1.3 * k),
+        (("density",), stiff),
+    )
     yield Case("stiffness 1.2, noise", replace(sound, stiffness=lambda xi, k: 1.2 * k), (stiff,), noise=0.01)
     yield Case("friction sign, noise", replace(sound, mu=-1.0), (("friction sign",),), noise=0.01)
     yield Case("stiffness 1.2, four channels", replace(sound, stiffness=lambda xi, k: 1.2 * k), (stiff,), few)
-    yield Case("inertia m r^2, four channels", replace(sound, inertia=(2.0, 2.0)), (("inertia by m r^2",),), few)
-    yield Case("bearings along 0.3, four channels", replace(sound, bearing=(0.3, 0.3, 1.0, 1.0)), (("bearing stiffness along the line of action",),), few)
+    yield Case(
+        "inertia m r^2, four channels", replace(sound, inertia=(2.0, 2.0)), (("inertia by m r^2",),), few
+    )
+    yield Case(
+        "bearings along 0.3, four channels",
+        replace(sound, bearing=(0.3, 0.3, 1.0, 1.0)),
+        (("bearing stiffness along the line of action",),),
+        few,
+    )
     yield Case("no friction, four channels", replace(sound, mu=0.0), (("friction left out",),), few)
 
 
@@ -332,7 +398,7 @@ def climbed(case: Case, pair: GearPair, budget: float = 60.0) -> Ladder:
 
 
 def rank(case: Case, ladder: Ladder) -> int:
-    """Return the worst place of the true causes in the steps and their alternatives: 1 is first, 0 is none."""
+    """Return the worst place of the true causes in steps and alternatives: 1 is first, 0 is none."""
     places = []
     for names in case.causes:
         place = 0

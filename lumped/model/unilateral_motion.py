@@ -356,7 +356,7 @@ def unilateral_motion(
 
 
 def motion_of_shooting(shooting: Shooting, *, settles: bool = True) -> RevolutionMotion:
-    """Periodic motion of like teeth that ``shooting`` finds, from its linear motion; see ``unilateral_motion``.
+    """Periodic motion of like teeth by ``shooting`` from its linear motion, see ``unilateral_motion``.
 
     Raises
     ------

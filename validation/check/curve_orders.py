@@ -161,10 +161,10 @@ def orders_of_motion(motion: MotionCurves, channel: Channel, like: ComplexOrders
         places = like.orders * motion.mesh_cycles
         index = np.round(places).astype(np.int64) - 1
         has = (np.abs(places - np.round(places)) < _WHOLE) & (index >= 0) & (index < every.orders.size)
-        values = np.zeros(like.orders.size, dtype=np.complex128)
-        values[has] = every.values[index[has]]
-        none = np.zeros((2 * values.size, 2 * values.size))
-        return ComplexOrders(like.orders, values, every.mean, none, like.period)
+        amplitudes = np.zeros(like.orders.size, dtype=np.complex128)
+        amplitudes[has] = every.values[index[has]]
+        none = np.zeros((2 * amplitudes.size, 2 * amplitudes.size))
+        return ComplexOrders(like.orders, amplitudes, every.mean, none, like.period)
     phases = np.arange(_SAMPLES * like.period) / _SAMPLES
     label = PAIR_LABELS[0]  # all labels have the same life
     # The end of the period is before A.

@@ -15,7 +15,7 @@ from validation.check.explanations.registry import EXPLANATIONS
 from validation.check.mesh_frequency import SAME
 from validation.check.motion_curves import MotionCurves
 from validation.check.problem import Problem
-from validation.check.search import OF_FREQUENCY, BudgetSpentError, Path, Search, Step, without_step
+from validation.check.search import OF_FREQUENCY, BudgetSpentError, Motions, Path, Search, Step, without_step
 
 #: Paths that are followed at the same time, and most steps of a path.
 _BEAM = 3
@@ -94,7 +94,7 @@ class Ladder:
     complete: bool
 
 
-def climb(problem: Problem, *, limit: float, budget: float) -> Ladder:
+def climb(problem: Problem, *, limit: float, budget: float, motions: Motions | None = None) -> Ladder:
     """Search the explanations of a misfit, with a beam of three paths.
 
     A step is accepted where it lowers the misfit by more than 10 % and by more than the error of the
@@ -106,8 +106,9 @@ def climb(problem: Problem, *, limit: float, budget: float) -> Ladder:
     problem : the curves and our motion
     limit : misfit below which the curves agree
     budget : processor time of the search [s]
+    motions : motions of changed models, which searches of several curves of one pair share; they are added to
     """
-    search = Search(problem, budget)
+    search = Search(problem, budget, motions={} if motions is None else motions)
     floor = search.floor(limit)
     best = _best_path(search, limit, floor)
     best = _exchanged(search, best, limit, floor)

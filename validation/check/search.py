@@ -13,6 +13,7 @@ Sources: docs/how_to/check_your_model.md, "Explanations".
 
 from __future__ import annotations
 
+import itertools
 import time
 import warnings
 from collections.abc import Iterator, Sequence
@@ -34,6 +35,7 @@ from validation.check.explanations.registry import EXPLANATIONS
 from validation.check.misfit import Misfit
 from validation.check.motion_curves import MotionCurves
 from validation.check.problem import Problem
+from validation.signals.complex_orders import complex_orders
 
 #: A free parameter counts as this much worse than a fixed value with the same misfit.
 FREE_IS_WORSE = 1.15
@@ -134,6 +136,10 @@ class Path:
         return float(np.hypot(self.trial.value, floor)) * FREE_IS_WORSE**self.free
 
 
+#: Motions of changed models; None: the model has no motion.
+Motions = dict[tuple[GearPair, Physics], MotionCurves | None]
+
+
 class BudgetSpentError(Exception):
     """The processor time of the search is spent."""
 
@@ -147,6 +153,7 @@ class Search:
     problem : the curves and our motion
     budget : processor time [s]
     causes : causes that are tried
+    motions : motions of changed models; searches of several curves of one pair can share them
     runs : number of motions that were computed
     archive : keys of the steps -> best path with these steps
     """
@@ -154,9 +161,9 @@ class Search:
     problem: Problem
     budget: float
     causes: tuple[Cause, ...] = ()
+    motions: Motions = field(default_factory=dict)
     runs: int = 0
     archive: dict[frozenset[tuple[str, str]], Path] = field(default_factory=dict)
-    _motions: dict[tuple[GearPair, Physics], MotionCurves | None] = field(default_factory=dict)
     _readings: dict[Reading, tuple[ChannelOrders, ...] | None] = field(default_factory=dict)
     _expanded: dict[frozenset[tuple[str, str]], list[Path]] = field(default_factory=dict)
 
@@ -165,7 +172,7 @@ class Search:
         self.causes = (*EXPLANATIONS.values(), *causes_of_channels(self.problem))
         self._end = time.process_time() + self.budget
         start = Variant(self.problem.pair)
-        self._motions[start.pair, start.physics] = self.problem.motion
+        self.motions[start.pair, start.physics] = self.problem.motion
 
     def start(self) -> Path:
         """Return the path without steps."""
@@ -200,7 +207,7 @@ class Search:
     def _motion(self, pair: GearPair, physics: Physics) -> MotionCurves | None:
         """Motion of a variant, computed once."""
         key = pair, physics
-        if key not in self._motions:
+        if key not in self.motions:
             if time.process_time() > self._end:
                 raise BudgetSpentError
             self.runs += 1
@@ -208,10 +215,10 @@ class Search:
                 with warnings.catch_warnings():
                     warnings.simplefilter("ignore")
                     again = self.problem.curves.recurrence
-                    self._motions[key] = motion_of(pair, physics, again, settles=self._settles)
+                    self.motions[key] = motion_of(pair, physics, again, settles=self._settles)
             except SpurcheckError:
-                self._motions[key] = None
-        return self._motions[key]
+                self.motions[key] = None
+        return self.motions[key]
 
     def _theirs(self, reading: Reading) -> tuple[ChannelOrders, ...] | None:
         """Their channels in a reading, computed once."""
@@ -227,10 +234,8 @@ class Search:
 
         This is the error of our motion, with the noise of the curves and a fiftieth of the limit.
         """
-        rows = self.problem.misfit.channels
-        noise = [float(np.trace(row.channel.orders.covariance)) / row.scale**2 for row in rows]
         error = self.problem.motion.motion.attrs.get("error_estimate", 0.0)
-        return float(np.sqrt(np.mean(noise) + error**2 + (limit / 50.0) ** 2))
+        return float(np.sqrt(noise_of(self.problem) ** 2 + error**2 + (limit / 50.0) ** 2))
 
     def expand(self, path: Path) -> list[Path]:
         """Return the paths with one step more, each fitted; the misfit is smallest first.
@@ -344,7 +349,7 @@ class Search:
                     places.append((coordinate, trial))
             places.sort(key=lambda place: place[0])
             best = None
-            for (x0, one), (x1, other) in zip(places, places[1:], strict=False):
+            for (x0, one), (x1, other) in itertools.pairwise(places):
                 share, rest = _between(one.residual, other.residual, taken_up)
                 if best is None or rest < best[0]:
                     best = rest, x0 + share * (x1 - x0)
@@ -393,7 +398,7 @@ class Search:
     def _gauss_newton(self, path: Path) -> Path | None:
         """One Gauss-Newton step, shortened where it does not lower the misfit; None: no lower misfit."""
         slopes = self._slopes(path)
-        change = -np.linalg.lstsq(slopes, path.trial.residual, rcond=1e-6)[0]
+        change: FloatArray = -np.linalg.lstsq(slopes, path.trial.residual, rcond=1e-6)[0]
         for share in (1.0, 0.4, 0.1):
             steps = _moved(path.steps, share * change)
             trial = self.trial(steps)
@@ -410,9 +415,36 @@ def _moved(steps: Sequence[Step], change: FloatArray) -> tuple[Step, ...]:
         if step.choice is None:
             low, high = step.cause.reach
             coordinate = float(np.clip(step.coordinate + next(changes), low, high))
-            step = step._replace(coordinate=coordinate)  # noqa: PLW2901
+            step = step._replace(coordinate=coordinate)
         moved.append(step)
     return tuple(moved)
+
+
+def noise_of(problem: Problem) -> float:
+    """Return the misfit that noise alone makes: half the difference between two halves of the curves.
+
+    Orders above those that are compared are no noise, because they repeat with every cycle. Curves of less
+    than two cycles, and of teeth that differ, count as free of noise.
+    """
+    cycles = problem.cycles[problem.settled.used]
+    whole = int(np.ptp(cycles) + 0.01 + cycles[1] - cycles[0])
+    if whole < 2 or (problem.orders % 1.0).any():
+        return 0.0
+    middle = cycles[-1] - whole // 2
+    first = (cycles > middle - whole // 2) & (cycles <= middle)
+    squares = []
+    for row in problem.misfit.channels:
+        if row.channel.channel.tooth_pair is not None:
+            continue
+        values = row.channel.channel.values[problem.settled.used]
+        try:
+            halves = [
+                complex_orders(cycles[one], values[one], problem.orders) for one in (first, cycles > middle)
+            ]
+        except SpurcheckError:
+            return 0.0
+        squares.append((np.linalg.norm(halves[1].values - halves[0].values) / (2.0 * row.scale)) ** 2)
+    return float(np.sqrt(np.mean(squares))) if squares else 0.0
 
 
 def residual_of(misfit: Misfit) -> FloatArray:
@@ -444,4 +476,4 @@ def without_step(path: Path, number: int) -> tuple[Step, ...]:
     return (*path.steps[:number], *path.steps[number + 1 :])
 
 
-__all__ = ["BudgetSpentError", "Path", "Search", "Step", "Trial", "residual_of", "without_step"]
+__all__ = ["BudgetSpentError", "Motions", "Path", "Search", "Step", "Trial", "residual_of", "without_step"]

@@ -44,9 +44,17 @@ def _friction_sign(problem: Problem, variant: Variant) -> list[Choice]:
             force_pinion=-1.0,
             force_gear=-1.0,
         ),
-        _altered("moment of the pinion", "the friction moment of the pinion with the wrong sign", moment_pinion=-1.0),
-        _altered("moment of the gear", "the friction moment of the gear with the wrong sign", moment_gear=-1.0),
-        _altered("force on the pinion", "the friction force on the pinion with the wrong sign", force_pinion=-1.0),
+        _altered(
+            "moment of the pinion",
+            "the friction moment of the pinion with the wrong sign",
+            moment_pinion=-1.0,
+        ),
+        _altered(
+            "moment of the gear", "the friction moment of the gear with the wrong sign", moment_gear=-1.0
+        ),
+        _altered(
+            "force on the pinion", "the friction force on the pinion with the wrong sign", force_pinion=-1.0
+        ),
         _altered("force on the gear", "the friction force on the gear with the wrong sign", force_gear=-1.0),
     ]
 
@@ -57,7 +65,9 @@ def _friction_part(problem: Problem, variant: Variant) -> list[Choice]:
         return []
     return [
         _altered("no moments", "the moments of friction forgotten", moment_pinion=0.0, moment_gear=0.0),
-        _altered("no forces", "friction forces on the translations forgotten", force_pinion=0.0, force_gear=0.0),
+        _altered(
+            "no forces", "friction forces on the translations forgotten", force_pinion=0.0, force_gear=0.0
+        ),
     ]
 
 
@@ -121,7 +131,9 @@ def _bearings(problem: Problem, variant: Variant) -> list[Choice]:
         return []
     return [
         _altered("rigid", "rigid bearings: gears that only turn", bearings="rigid"),
-        _altered("torsional", "a torsional model, without translations and bearing forces", bearings="left out"),
+        _altered(
+            "torsional", "a torsional model, without translations and bearing forces", bearings="left out"
+        ),
     ]
 
 
@@ -144,8 +156,12 @@ def _causes() -> Iterator[Cause]:
     ) -> Cause:
         return Cause(name, Kind.PHYSICS, meaning, span, choices)
 
-    yield altered("friction sign", "friction with the wrong sign", "all, moments, forces, one gear", _friction_sign)
-    yield altered("part of friction", "moments or forces of friction forgotten", "moments, forces", _friction_part)
+    yield altered(
+        "friction sign", "friction with the wrong sign", "all, moments, forces, one gear", _friction_sign
+    )
+    yield altered(
+        "part of friction", "moments or forces of friction forgotten", "moments, forces", _friction_part
+    )
     yield Cause(
         name="friction coefficient",
         kind=Kind.PHYSICS,
@@ -156,10 +172,22 @@ def _causes() -> Iterator[Cause]:
         words="the friction coefficient times {value}",
         applies=lambda problem, variant: _has_friction(variant),
     )
-    yield altered("mesh force sign", "the mesh force on the translation of the gear reversed", "-1", _mesh_force_sign)
-    yield altered("damper law", "another law of the dampers of the teeth", "constant, proportional, root of the whole mesh", _dampers)
+    yield altered(
+        "mesh force sign", "the mesh force on the translation of the gear reversed", "-1", _mesh_force_sign
+    )
+    yield altered(
+        "damper law",
+        "another law of the dampers of the teeth",
+        "constant, proportional, root of the whole mesh",
+        _dampers,
+    )
     yield altered("teeth pull", "a linear mesh in place of unilateral contact", "linear", _pulling)
-    yield altered("stiffness over the mesh cycle", "another course of the mesh stiffness", "reversed, constant, single pair, double pair, shared evenly", _over_cycle)
+    yield altered(
+        "stiffness over the mesh cycle",
+        "another course of the mesh stiffness",
+        "reversed, constant, single pair, double pair, shared evenly",
+        _over_cycle,
+    )
     yield altered("pitch radius", "pitch radii in place of base radii", "1/cos(alpha)", _radius)
     yield altered("supports", "rigid bearings, or a torsional model", "rigid, torsional", _bearings)
     yield altered("shafts left out", "springs in place of shafts", "springs", _shafts)

@@ -39,6 +39,16 @@ def _choice(label: float | str, words: str, fields: Callable[[GearPair], Fields]
     return Choice(label, words, lambda variant: variant.with_inputs(dict(fields(variant.pair))))
 
 
+def _constant(fields: Fields) -> Callable[[GearPair], Fields]:
+    """The same fields for every pair."""
+    return lambda pair: fields
+
+
+def _times(fields: Callable[[GearPair, float], Fields], value: float) -> Callable[[GearPair], Fields]:
+    """Fields of a pair with a factor."""
+    return lambda pair: fields(pair, value)
+
+
 def _on_springs(problem: Problem, variant: Variant) -> bool:
     return variant.pair.shafts is None
 
@@ -88,9 +98,7 @@ def _density(pair: GearPair, value: float) -> Fields:
 
 
 def _width(pair: GearPair, value: float) -> Fields:
-    return {
-        f"{gear}.face_width": to_stated(getattr(pair, gear).face_width, "mm") * value for gear in _GEARS
-    }
+    return {f"{gear}.face_width": to_stated(getattr(pair, gear).face_width, "mm") * value for gear in _GEARS}
 
 
 def _tip_radii(pair: GearPair) -> tuple[float, float]:
@@ -211,7 +219,9 @@ def _free() -> Iterator[Cause]:
 
 
 def _twice(problem: Problem, variant: Variant) -> list[Choice]:
-    return [_choice(2.0, "the series stiffness of both teeth forgotten: k times 2", lambda p: _stiffness(p, 2.0))]
+    return [
+        _choice(2.0, "the series stiffness of both teeth forgotten: k times 2", lambda p: _stiffness(p, 2.0))
+    ]
 
 
 def _half(problem: Problem, variant: Variant) -> list[Choice]:
@@ -222,7 +232,7 @@ def _half(problem: Problem, variant: Variant) -> list[Choice]:
 def _stiffness_models(problem: Problem, variant: Variant) -> list[Choice]:
     own = variant.pair.mesh.stiffness.model
     return [
-        _choice(name, f"the stiffness model {name!r}", lambda pair, name=name: {"mesh.stiffness": {"model": name}})  # type: ignore[misc]
+        _choice(name, f"the stiffness model {name!r}", _constant({"mesh.stiffness": {"model": name}}))
         for name in MODELS
         if name not in (own, "table")
     ]
@@ -348,7 +358,7 @@ def _disc(problem: Problem, variant: Variant) -> list[Choice]:
     }
 
     def discs(pair: GearPair, both: tuple[float, float]) -> Fields:
-        fields = {}
+        fields: dict[str, float] = {}
         for name, radius in zip(_GEARS, both, strict=True):
             gear = getattr(pair, name)
             mass, inertia = solid_disc(radius, gear.face_width, gear.density, gear.bore)
@@ -386,13 +396,15 @@ def _speed_of_gear(problem: Problem, variant: Variant) -> list[Choice]:
     if problem.curves.abscissa == "time":
         if not cause and abs(shown - 1.0) < 5e-3:
             return []
-        words = f"a motion at {shown:.4g} times the speed: {cause or 'the mesh frequency shows another speed'}"
+        words = (
+            f"a motion at {shown:.4g} times the speed: {cause or 'the mesh frequency shows another speed'}"
+        )
         return [_choice(shown, words, lambda pair: _speed(pair, shown))]
     ratio = _ratio(variant.pair)
     turns = {math.pi / 30.0: "rpm taken for rad/s", 30.0 / math.pi: "rad/s taken for rpm"}
     if ratio != 1.0:
         turns |= {ratio: "the pinion's speed on the gear", 1.0 / ratio: "the gear's speed on the pinion"}
-    return [_choice(value, words, lambda pair, value=value: _speed(pair, value)) for value, words in turns.items()]  # type: ignore[misc]
+    return [_choice(value, words, _times(_speed, value)) for value, words in turns.items()]
 
 
 def _pressure_angle(problem: Problem, variant: Variant) -> list[Choice]:
@@ -412,7 +424,16 @@ def _shifts(problem: Problem, variant: Variant) -> list[Choice]:
     first, second = variant.pair.profile_shifts
     choices = []
     if first != 0.0 or second != 0.0:
-        none = {f"{gear}.{field}": value for gear in _GEARS for field, value in (("profile_shift", 0.0), ("tip_diameter", None), ("addendum", None), ("tip_alteration", None))}
+        none = {
+            f"{gear}.{field}": value
+            for gear in _GEARS
+            for field, value in (
+                ("profile_shift", 0.0),
+                ("tip_diameter", None),
+                ("addendum", None),
+                ("tip_alteration", None),
+            )
+        }
         choices.append(
             _choice("ignored", "profile shifts ignored", lambda pair: {**none, "centre_distance": None})
         )
@@ -448,7 +469,9 @@ def _exchanged(problem: Problem, variant: Variant) -> list[Choice]:
     }
     return [
         _choice("bearings", "the bearings of pinion and gear exchanged", lambda pair: gears),
-        _choice("directions", "bearing stiffness along and across the line of action exchanged", lambda p: lines),
+        _choice(
+            "directions", "bearing stiffness along and across the line of action exchanged", lambda p: lines
+        ),
         _choice("masses", "masses and inertias of pinion and gear exchanged", lambda pair: masses),
     ]
 
@@ -459,7 +482,11 @@ def _one_width(problem: Problem, variant: Variant) -> list[Choice]:
     if widths[0] == widths[1]:
         return []
     return [
-        _choice(f"of the {gear}", f"both gears with the face width of the {gear}", lambda pair, width=width: {"gears.face_width": width})  # type: ignore[misc]
+        _choice(
+            f"of the {gear}",
+            f"both gears with the face width of the {gear}",
+            _constant({"gears.face_width": width}),
+        )
         for gear, width in zip(_GEARS, widths, strict=True)
     ]
 
@@ -472,22 +499,68 @@ def _fixed() -> Iterator[Cause]:
     ) -> Cause:
         return Cause(name, Kind.INPUT, meaning, span, choices)
 
-    yield fixed("speed of the curves", "the speed that the mesh frequency of the curves shows", "ratio of the teeth, rpm, rad/s", _speed_of_gear)
-    yield fixed("torque of the other gear", "the torque of the gear on the pinion, or the reverse", "ratio of the teeth", _torque_of_gear)
-    yield fixed("contact form", "prescribed contact in place of loaded contact, or the reverse", "prescribed, loaded", _contact)
+    yield fixed(
+        "speed of the curves",
+        "the speed that the mesh frequency of the curves shows",
+        "ratio of the teeth, rpm, rad/s",
+        _speed_of_gear,
+    )
+    yield fixed(
+        "torque of the other gear",
+        "the torque of the gear on the pinion, or the reverse",
+        "ratio of the teeth",
+        _torque_of_gear,
+    )
+    yield fixed(
+        "contact form",
+        "prescribed contact in place of loaded contact, or the reverse",
+        "prescribed, loaded",
+        _contact,
+    )
     yield fixed("friction left out", "no friction", "left out", _no_friction)
     yield fixed("friction law", "another law of friction", ", ".join(FRICTIONAL), _laws)
-    yield fixed("stiffness model", "another model of the stiffness of a tooth pair", ", ".join(name for name in MODELS if name != "table"), _stiffness_models)
-    yield fixed("series stiffness of both teeth", "the stiffness of one tooth in place of two in series", "2", _twice)
+    yield fixed(
+        "stiffness model",
+        "another model of the stiffness of a tooth pair",
+        ", ".join(name for name in MODELS if name != "table"),
+        _stiffness_models,
+    )
+    yield fixed(
+        "series stiffness of both teeth", "the stiffness of one tooth in place of two in series", "2", _twice
+    )
     yield fixed("compliance counted twice", "the compliance of both teeth counted twice", "0.5", _half)
     yield fixed("mesh damping left out", "no damping of the mesh", "left out", _no_mesh_damping)
-    yield fixed("bearing damping left out", "no damping of the bearings", "both gears, one gear", _no_bearing_damping)
-    yield fixed("inertia by m r^2", "m r^2 in place of m r^2/2, or half of the inertia", "2, 0.5; both gears, one gear", _ring)
-    yield fixed("radius of the discs", "mass and inertia of discs of another circle", "tip circle, base circle", _disc)
+    yield fixed(
+        "bearing damping left out", "no damping of the bearings", "both gears, one gear", _no_bearing_damping
+    )
+    yield fixed(
+        "inertia by m r^2",
+        "m r^2 in place of m r^2/2, or half of the inertia",
+        "2, 0.5; both gears, one gear",
+        _ring,
+    )
+    yield fixed(
+        "radius of the discs", "mass and inertia of discs of another circle", "tip circle, base circle", _disc
+    )
     yield fixed("relief ignored", "tip and root relief ignored", "ignored", _relief)
-    yield fixed("deviations", "deviations of single teeth ignored, or those of the other gear", "ignored, exchanged", _deviations)
-    yield fixed("exchanged", "values of pinion and gear, or of both directions, exchanged", "bearings, directions, masses", _exchanged)
-    yield fixed("pressure angle", "another pressure angle", ", ".join(f"{angle:g}" for angle in _PRESSURE_ANGLES), _pressure_angle)
+    yield fixed(
+        "deviations",
+        "deviations of single teeth ignored, or those of the other gear",
+        "ignored, exchanged",
+        _deviations,
+    )
+    yield fixed(
+        "exchanged",
+        "values of pinion and gear, or of both directions, exchanged",
+        "bearings, directions, masses",
+        _exchanged,
+    )
+    yield fixed(
+        "pressure angle",
+        "another pressure angle",
+        ", ".join(f"{angle:g}" for angle in _PRESSURE_ANGLES),
+        _pressure_angle,
+    )
     yield fixed("profile shifts", "profile shifts ignored or exchanged", "ignored, exchanged", _shifts)
     yield fixed("one face width", "one face width for both gears", "pinion, gear", _one_width)
 

@@ -281,13 +281,25 @@ def _causes() -> Iterator[Cause]:
     ) -> Cause:
         return Cause(name, Kind.READING, meaning, span, choices)
 
-    yield read("time axis", "times in another unit, or at another speed than the motion", "ratio of the frequencies", _time_axis)
+    yield read(
+        "time axis",
+        "times in another unit, or at another speed than the motion",
+        "ratio of the frequencies",
+        _time_axis,
+    )
     yield read("sign of a channel", "a channel, or a family of channels, with the wrong sign", "-1", _signs)
     units = ", ".join(f"{factor:.4g}" for factor in UNIT_FACTORS.values())
     yield read("unit of a channel", "a channel, or a family of channels, in another unit", units, _units)
-    yield read("radius of a channel", "an angle for a length, or of the other gear", "base radii, ratio", _radii)
+    yield read(
+        "radius of a channel", "an angle for a length, or of the other gear", "base radii, ratio", _radii
+    )
     yield read("channels swapped", "two channels swapped", "pairs of channels", _swapped)
-    yield read("another quantity", "a channel that holds another quantity", "displacement, rate, force", _other_quantities)
+    yield read(
+        "another quantity",
+        "a channel that holds another quantity",
+        "displacement, rate, force",
+        _other_quantities,
+    )
     yield read("time reversed", "time that runs backwards", "reversed", _reversed)
     yield read("wrong phase", "another phase than the stated one", "searched", _phase)
     yield read("not settled", "free vibrations that still decay", "not settled", _not_settled)

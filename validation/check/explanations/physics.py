@@ -106,7 +106,7 @@ def motion_of(
 
     Raises
     ------
-    NumericalError : the altered model has no stable periodic motion, or the pair does not allow the alteration
+    NumericalError : the altered model has no stable periodic motion, or the pair refuses the alteration
     ParameterError : a law refuses the pair
     """
     prescribed = pair.mesh.contact == "prescribed"
@@ -128,9 +128,7 @@ def motion_of(
         start = periodic_solution(system, np.zeros(1), estimate_error=False)
         if start.spectral_radius > _GROWS:
             raise NumericalError("The motion of the altered equations grows without bound.")
-    motion = motion_of_shooting(
-        Shooting(pair, system, AlteredLaws(pair, physics), _SAMPLES), settles=settles
-    )
+    motion = motion_of_shooting(Shooting(pair, system, AlteredLaws(pair, physics), _SAMPLES), settles=settles)
     if motion.spectral_radius > UNSTABLE:
         raise NumericalError("The periodic motion is unstable.")
     labelled = labelled_motion(motion, provenance(pair, samples_per_cycle=_SAMPLES, contact="unilateral"))
@@ -200,9 +198,7 @@ class AlteredLaws(ToothLaws):
         return laws
 
 
-def damper_factor(
-    pair: GearPair, elements: MeshElements, law: Damper
-) -> Callable[[FloatArray], FloatArray]:
+def damper_factor(pair: GearPair, elements: MeshElements, law: Damper) -> Callable[[FloatArray], FloatArray]:
     """Return the factor over xi from the damper of each pair, 2 zeta sqrt(k_i m_e), to another law.
 
     With K the sum of k_i over all pairs, each pair takes its part k_i/K of the damper of the mesh:
@@ -223,9 +219,7 @@ def damper_factor(
     return factor
 
 
-def _total(
-    pair: GearPair, law: PathFunction, extra: float = 0.0
-) -> Callable[[FloatArray], FloatArray]:
+def _total(pair: GearPair, law: PathFunction, extra: float = 0.0) -> Callable[[FloatArray], FloatArray]:
     """Return the sum of a law over all pairs, as a function of the position xi of one of them."""
     low, high = law.interval
     pitch = pair.geometry.base_pitch

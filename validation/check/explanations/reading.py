@@ -9,13 +9,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lumped.errors import NumericalError
 from lumped.model.periodic_system import LTVSystem, supports_of
 from lumped.schema.pair import GearPair
-from lumped.typing import ComplexArray, FloatArray
+from lumped.typing import FloatArray
 from validation.check.curve_orders import ChannelOrders, orders_of_channel
 from validation.check.curves import Channel, Curves
 from validation.check.problem import Problem
@@ -126,7 +128,7 @@ def _free_vibrations(pair: GearPair, cycles: FloatArray) -> FloatArray:
     system = LTVSystem.of(pair.healthy, "elastic", supports=supports_of(pair, None))
     times = (np.arange(64) + 0.5) / 64 * system.period
     mean = system.matrices(times).mean(axis=0)
-    rates: ComplexArray = np.linalg.eigvals(mean) * system.period
+    rates = np.asarray(np.linalg.eigvals(mean) * system.period, dtype=np.complex128)
     rates = rates[(rates.imag > 0.0) & (rates.real < 0.0)]
     if not rates.size:
         raise NumericalError("The pair has no free vibration that decays.")
@@ -146,7 +148,7 @@ def _scaled(orders: ComplexOrders, factor: float) -> ComplexOrders:
     )
 
 
-def _times(orders: ComplexOrders, factors: ComplexArray) -> ComplexOrders:
+def _times(orders: ComplexOrders, factors: NDArray[np.complexfloating[Any, Any]]) -> ComplexOrders:
     """Orders times complex factors. The mean and the covariance stay."""
     return replace(orders, values=orders.values * factors)
 
