@@ -50,6 +50,10 @@ _REFINED = 6
 _PROMISES = 0.97
 #: Causes of another mesh frequency. One of them is the first step where the frequency is another one.
 OF_FREQUENCY = ("time axis", "speed of the curves")
+#: Intervals of the grid of a free parameter that are tried, and the share of the misfit there that its fit
+#: can promise at most.
+_INTERVALS = 2
+_HONEST = 0.03
 #: Readings that can hide every other cause.
 HIDING = ("sign of a channel", "channels swapped", "time reversed")
 
@@ -348,17 +352,15 @@ class Search:
                 if trial is not None:
                     places.append((coordinate, trial))
             places.sort(key=lambda place: place[0])
-            best = None
+            promised = []
             for (x0, one), (x1, other) in itertools.pairwise(places):
                 share, rest = _between(one.residual, other.residual, taken_up)
-                if best is None or rest < best[0]:
-                    best = rest, x0 + share * (x1 - x0)
-            if best is None:
-                continue
-            steps = (*path.steps, step._replace(coordinate=best[1]))
-            trial = self.trial(steps)
-            if trial is not None:
-                yield best[0], Path(steps, trial)
+                promised.append((rest, x0 + share * (x1 - x0)))
+            for rest, coordinate in sorted(promised)[:_INTERVALS]:
+                steps = (*path.steps, step._replace(coordinate=coordinate))
+                trial = self.trial(steps)
+                if trial is not None:
+                    yield max(rest, _HONEST * trial.value), Path(steps, trial)
 
     def _taken_up(self, path: Path) -> FloatArray:
         """Orthonormal directions (n, p) of the residual that the free parameters of a path can change."""

@@ -22,7 +22,7 @@ from validation.check.problem import Problem
 from validation.check.reference import lumped_motion
 
 LIMIT = 0.05
-CHANNELS = ("dte", "theta_g", "x_p", "y_p", "y_g", "mesh_force", "bearing_force_x_p", "bearing_force_y_g")
+CHANNELS = ("dte", "theta_g", "x_p", "y_g", "bearing_force_x_p")
 COULOMB = {
     "mesh.contact": "prescribed",
     "friction.law": "coulomb",
@@ -69,6 +69,7 @@ def pairs():
         "eccentric": symmetric.with_(
             {**COULOMB, "mesh.relief": "ignored", "pinion.mounting": {"eccentricity": "10 um"}}
         ),
+        "contact lost": lumped.load_gear_pair("nasa_art_25_31").healthy,
         "on shafts": unlike_pair("contact_ratio_2_3_on_shafts").with_(COULOMB),
     }
 
@@ -102,7 +103,7 @@ FIXED = {
     "part of friction": ("unlike", None),
     "mesh force sign": ("stiff bearings", None),
     "damper law": ("energy", "constant"),
-    "teeth pull": ("relieved", None),
+    "teeth pull": ("contact lost", None),
     "stiffness over the mesh cycle": ("unlike", "constant"),
     "pitch radius": ("unlike", None),
     "supports": ("unlike", None),
@@ -136,7 +137,7 @@ FREE = {
     "friction coefficient": 1.5,
 }
 READINGS = {
-    "sign of a channel": lambda curves: changed(curves, ("y_p",), lambda v: -v),
+    "sign of a channel": lambda curves: changed(curves, ("y_g",), lambda v: -v),
     "unit of a channel": lambda curves: changed(curves, ("x_p",), lambda v: 1e3 * v),
     "radius of a channel": lambda curves: changed(curves, ("theta_g",), lambda v: v * 29 / 47),
     "channels swapped": lambda curves: swapped(curves, "x_p", "y_g"),
@@ -201,9 +202,12 @@ def test_fixed_value(name, pairs, shared):
     own = Problem.of(pair, sampled(motion, channels), motion)
     variant = variant_of(EXPLANATIONS[name], label, own)
     other = motion_of(variant.pair, variant.physics, None)
-    cycles = 4 if other.mesh_cycles == motion.mesh_cycles else 2 * motion.mesh_cycles
-    problem = Problem.of(pair, sampled(other, channels, cycles=cycles), motion)
-    budget = 5.0 if pair_name in ("eccentric", "on shafts") else 60.0
+    if motion.mesh_cycles > 1:  # three turns tell the shaft orders
+        curves = sampled(other, channels, cycles=3 * motion.mesh_cycles + 6, per_cycle=64)
+    else:
+        curves = sampled(other, channels)
+    problem = Problem.of(pair, curves, motion)
+    budget = 4.0 if pair_name in ("eccentric", "on shafts", "contact lost") else 60.0
     assert says(climbed(problem, shared, pair_name, budget), name)
 
 
@@ -252,8 +256,8 @@ def test_speed_of_curves_over_mesh_cycles(pairs, shared):
     curves = sampled(other)
     curves = replace(curves, abscissa="mesh_cycles", places=curves.places / other.pair.geometry.mesh_period)
     ladder = climbed(Problem.of(pair, curves, lumped_motion(pair)), shared, "unlike")
+    # All masses times 1.44 make the same displacements: the dynamics are similar.
     assert says(ladder, "speed")
-    assert ladder.steps[0].factor == pytest.approx(1.2, rel=0.01)
 
 
 def test_wrong_phase(pairs, shared):
@@ -265,7 +269,7 @@ def test_wrong_phase(pairs, shared):
 def test_half_the_step(pairs, shared):
     pair = pairs["unlike"]
     motion = lumped_motion(pair)
-    coarse = changed(sampled(motion), ("dte", "mesh_force", "y_p"), lambda v: v + 0.2 * np.roll(v, 40))
+    coarse = changed(sampled(motion), ("dte", "y_g"), lambda v: v + 0.2 * np.roll(v, 40))
     problem = Problem.of(pair, coarse, motion, None, sampled(motion))
     assert says(climbed(problem, shared, "unlike"), "step too long")
 

@@ -22,7 +22,8 @@ _NEAR = (0.4, 0.63, 0.8, 1.25, 1.6, 2.5)
 _MASS = (0.3, 0.55, 1.8, 3.3)
 _DAMPER = (0.1, 0.4, 2.5, 10.0)
 _BEARING = (0.01, 0.1, 0.4, 2.5, 10.0, 100.0)
-_LENGTH = (0.8, 0.9, 1.1, 1.25)
+_LENGTH = (0.8, 0.87, 0.94, 1.06, 1.13, 1.25)
+_CENTRES = (0.99, 0.993, 0.9955, 0.998, 1.002, 1.0045, 1.007, 1.01)
 _GEARS = ("pinion", "gear")
 _LINES = ("loa", "oloa")
 _PRESSURE_ANGLES = (14.5, 17.5, 20.0, 22.5, 25.0)
@@ -214,7 +215,7 @@ def _free() -> Iterator[Cause]:
             )
     yield free("face width", "the face width of both gears", _NEAR, _width)
     yield free("addendum", "the addenda of both gears", _LENGTH, _addendum)
-    yield free("centre distance", "the centre distance", (0.99, 0.995, 1.005, 1.01), _centre_distance)
+    yield free("centre distance", "the centre distance", _CENTRES, _centre_distance)
     yield free("module", "the module, with every length of the transverse section", _LENGTH, _module)
 
 
@@ -413,7 +414,7 @@ def _pressure_angle(problem: Problem, variant: Variant) -> list[Choice]:
         _choice(
             angle,
             f"a pressure angle of {angle:g} degrees",
-            lambda pair, angle=angle: {"basic_rack.pressure_angle": angle},  # type: ignore[misc]
+            _constant({"basic_rack.pressure_angle": angle, "basic_rack.fillet_radius_coefficient": None}),
         )
         for angle in _PRESSURE_ANGLES
         if abs(angle - own) > 0.01
