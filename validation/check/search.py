@@ -17,10 +17,12 @@ import itertools
 import time
 import warnings
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
+from scipy.optimize import minimize_scalar
 
 from lumped.errors import SpurcheckError
 from lumped.model.revolution_motion import Origin
@@ -50,10 +52,13 @@ _REFINED = 6
 _PROMISES = 0.97
 #: Causes of another mesh frequency. One of them is the first step where the frequency is another one.
 OF_FREQUENCY = ("time axis", "speed of the curves")
-#: Intervals of the grid of a free parameter that are tried, and the share of the misfit there that its fit
-#: can promise at most.
+#: Intervals of the grid of a free parameter that are tried.
 _INTERVALS = 2
-_HONEST = 0.03
+#: Free parameters that are searched by Brent's method where Gauss-Newton steps leave a misfit above this,
+#: and trials of each search.
+_SEARCHED = 2
+_STALLED = 0.02
+_TRIALS = 14
 #: Readings that can hide every other cause.
 HIDING = ("sign of a channel", "channels swapped", "time reversed")
 
@@ -268,6 +273,10 @@ class Search:
         free = [one for one in promising if one.steps[-1].choice is None]
         result = [self.fitted(one) for one in (*fixed[:_REFINED], *free[:_REFINED])]
         result += fixed[_REFINED:]
+        result.sort(key=lambda one: one.trial.value)
+        if result and result[0].trial.value > _STALLED:
+            stalled = [one for one in result if one.steps[-1].choice is None][:_SEARCHED]
+            result += [self.fitted(self._searched(one)) for one in stalled]
         return self._archived(result)
 
     def with_reading(self, path: Path) -> list[Path]:
@@ -360,7 +369,8 @@ class Search:
                 steps = (*path.steps, step._replace(coordinate=coordinate))
                 trial = self.trial(steps)
                 if trial is not None:
-                    yield max(rest, _HONEST * trial.value), Path(steps, trial)
+                    # Straight residuals promise too much where the motion is not straight between trials.
+                    yield float(np.sqrt(rest * trial.value)), Path(steps, trial)
 
     def _taken_up(self, path: Path) -> FloatArray:
         """Orthonormal directions (n, p) of the residual that the free parameters of a path can change."""
@@ -396,6 +406,28 @@ class Search:
         except BudgetSpentError:
             pass
         return path
+
+    def _searched(self, path: Path) -> Path:
+        """The path with the free parameter of its last step by Brent's method, within a step of the grid."""
+        *before, step = path.steps
+        places = np.sort([0.0, *(step.cause.coordinate(value) for value in step.cause.grid)])
+        reach = float(np.diff(places).min())
+        best = path
+
+        def value(coordinate: float) -> float:
+            nonlocal best
+            steps = (*before, step._replace(coordinate=float(coordinate)))
+            trial = self.trial(steps)
+            if trial is None:
+                return 10.0 * path.trial.value
+            if trial.value < best.trial.value:
+                best = Path(steps, trial)
+            return trial.value
+
+        bounds = step.coordinate - reach, step.coordinate + reach
+        with suppress(BudgetSpentError):
+            minimize_scalar(value, bounds=bounds, method="bounded", options={"maxiter": _TRIALS})
+        return best
 
     def _gauss_newton(self, path: Path) -> Path | None:
         """One Gauss-Newton step, shortened where it does not lower the misfit; None: no lower misfit."""

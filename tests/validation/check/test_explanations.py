@@ -33,7 +33,7 @@ PAGE = Path(__file__).parents[3] / "docs/how_to/check_your_model.md"
 
 def sampled(motion, channels=CHANNELS, cycles=4, per_cycle=421, phase=0.3):
     """Curves of a motion, at phases of their own."""
-    place = phase + np.arange(cycles * motion.mesh_cycles * per_cycle) / per_cycle
+    place = phase + np.arange(cycles * per_cycle) / per_cycle
     time = (place - phase) * motion.pair.geometry.mesh_period
     return Curves(
         "other", "time", time, tuple(Channel(name, name, motion.at(name, place)) for name in channels)
@@ -55,13 +55,7 @@ def pairs():
     symmetric = lumped.load_gear_pair("nasa_28_28")
     return {
         "unlike": unlike,
-        "stiff bearings": unlike.with_(
-            {
-                f"bearings.{gear}.{line}_stiffness": 4e9
-                for gear in ("pinion", "gear")
-                for line in ("loa", "oloa")
-            }
-        ),
+        "stiff bearings": unlike.with_({"bearings.stiffness": 4e9, "bearings.damping_ratio": 0.5}),
         "energy": unlike.with_({"mesh.stiffness": {"model": "energy"}}),
         "relieved": symmetric.with_(
             {**COULOMB, "pinion.tip_relief": {"amount": "4 um", "start_roll_angle": "24 deg"}}
@@ -202,8 +196,8 @@ def test_fixed_value(name, pairs, shared):
     own = Problem.of(pair, sampled(motion, channels), motion)
     variant = variant_of(EXPLANATIONS[name], label, own)
     other = motion_of(variant.pair, variant.physics, None)
-    if motion.mesh_cycles > 1:  # three turns tell the shaft orders
-        curves = sampled(other, channels, cycles=3 * motion.mesh_cycles + 6, per_cycle=64)
+    if motion.mesh_cycles > 1:  # the last half, two turns, tells the shaft orders
+        curves = sampled(other, channels, cycles=4 * motion.mesh_cycles + 1, per_cycle=64)
     else:
         curves = sampled(other, channels)
     problem = Problem.of(pair, curves, motion)

@@ -1,4 +1,4 @@
-"""Does the ladder separate two faults, prefer fixed values, and keep its verdict on other channels and noise?"""
+"""Does the ladder separate two faults, prefer fixed values, and stay the same on other channels and noise?"""
 
 from dataclasses import replace
 

@@ -19,7 +19,7 @@ from validation.check.problem import Problem
 
 #: Trial factors: of a stiffness, of a load or a mass, of a damper, of a bearing.
 _NEAR = (0.4, 0.63, 0.8, 1.25, 1.6, 2.5)
-_MASS = (0.3, 0.55, 1.8, 3.3)
+_MASS = (0.35, 0.6, 0.8, 1.25, 1.7, 2.8)
 _DAMPER = (0.1, 0.4, 2.5, 10.0)
 _BEARING = (0.01, 0.1, 0.4, 2.5, 10.0, 100.0)
 _LENGTH = (0.8, 0.87, 0.94, 1.06, 1.13, 1.25)
