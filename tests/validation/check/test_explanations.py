@@ -201,7 +201,7 @@ def test_fixed_value(name, pairs, shared):
     else:
         curves = sampled(other, channels)
     problem = Problem.of(pair, curves, motion)
-    budget = 4.0 if pair_name in ("eccentric", "on shafts", "contact lost") else 60.0
+    budget = 8.0 if pair_name in ("eccentric", "on shafts", "contact lost") else 60.0
     assert says(climbed(problem, shared, pair_name, budget), name)
 
 

@@ -305,7 +305,7 @@ def _no_friction(problem: Problem, variant: Variant) -> list[Choice]:
 def _laws(problem: Problem, variant: Variant) -> list[Choice]:
     own = variant.pair.friction.law
     return [
-        _choice(law, f"the friction law {law!r}", lambda pair, law=law: {"friction.law": law})  # type: ignore[misc]
+        _choice(law, f"the friction law {law!r}", _constant({"friction.law": law}))
         for law in FRICTIONAL
         if law != own
     ]
@@ -507,6 +507,12 @@ def _fixed() -> Iterator[Cause]:
         _speed_of_gear,
     )
     yield fixed(
+        "deviations",
+        "deviations of single teeth ignored, or those of the other gear",
+        "ignored, exchanged",
+        _deviations,
+    )
+    yield fixed(
         "torque of the other gear",
         "the torque of the gear on the pinion, or the reverse",
         "ratio of the teeth",
@@ -544,12 +550,6 @@ def _fixed() -> Iterator[Cause]:
         "radius of the discs", "mass and inertia of discs of another circle", "tip circle, base circle", _disc
     )
     yield fixed("relief ignored", "tip and root relief ignored", "ignored", _relief)
-    yield fixed(
-        "deviations",
-        "deviations of single teeth ignored, or those of the other gear",
-        "ignored, exchanged",
-        _deviations,
-    )
     yield fixed(
         "exchanged",
         "values of pinion and gear, or of both directions, exchanged",
