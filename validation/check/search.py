@@ -59,6 +59,8 @@ _INTERVALS = 2
 _SEARCHED = 2
 _STALLED = 0.02
 _TRIALS = 14
+#: Free parameters nearer to neutral than this change nothing that is worth a sentence.
+_LEAST_CHANGE = 1e-3
 #: Readings that can hide every other cause.
 HIDING = ("sign of a channel", "channels swapped", "time reversed")
 
@@ -88,6 +90,11 @@ class Step(NamedTuple):
         if self.choice is not None:
             return self.choice.label
         return self.cause.shown(self.cause.value(self.coordinate))
+
+    @property
+    def changes(self) -> bool:
+        """Whether the value changes anything that is worth a sentence."""
+        return self.choice is not None or abs(self.coordinate) > _LEAST_CHANGE
 
     @property
     def sentence(self) -> str:
@@ -277,7 +284,7 @@ class Search:
         if result and result[0].trial.value > _STALLED:
             stalled = [one for one in result if one.steps[-1].choice is None][:_SEARCHED]
             result += [self.fitted(self._searched(one)) for one in stalled]
-        return self._archived(result)
+        return self._archived([one for one in result if one.steps[-1].changes])
 
     def with_reading(self, path: Path) -> list[Path]:
         """Return paths with two steps more: another reading, and any other cause.
@@ -432,7 +439,8 @@ class Search:
     def _gauss_newton(self, path: Path) -> Path | None:
         """One Gauss-Newton step, shortened where it does not lower the misfit; None: no lower misfit."""
         slopes = self._slopes(path)
-        change: FloatArray = -np.linalg.lstsq(slopes, path.trial.residual, rcond=1e-6)[0]
+        solution = np.linalg.lstsq(slopes, path.trial.residual, rcond=1e-6)[0]
+        change = np.asarray(-solution, dtype=np.float64)
         for share in (1.0, 0.4, 0.1):
             steps = _moved(path.steps, share * change)
             trial = self.trial(steps)
