@@ -348,7 +348,16 @@ def unilateral_motion(
     """
     if pair.healthy is not pair:
         return settled_motion(pair, samples, supports)
-    shooting = Shooting.of(pair, samples, supports)
+    return motion_of_shooting(Shooting.of(pair, samples, supports), settles=settles)
+
+
+def motion_of_shooting(shooting: Shooting, *, settles: bool = True) -> RevolutionMotion:
+    """Periodic motion of like teeth by ``shooting`` from its linear motion, see ``unilateral_motion``.
+
+    Raises
+    ------
+    NumericalError : no such motion is found
+    """
     try:
         linear = periodic_solution(shooting.system, np.zeros(1), estimate_error=False)
     except NumericalError:  # a multiplier at +1

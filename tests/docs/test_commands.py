@@ -11,11 +11,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
+from tests.validation.measurements.synthetic import synthetic_measurement, write_measurement
 from typer.main import get_command
 from typer.testing import CliRunner
 
 import lumped
-from tests.validation.measurements.synthetic import synthetic_measurement, write_measurement
 from validation.cli import app
 from validation.commands import response
 from validation.cross_check import comparison
