@@ -97,8 +97,11 @@ class Shooting:
     @classmethod
     def of(cls, pair: GearPair, samples: int, supports: Supports) -> Self:
         """Return the search for a motion that repeats with every mesh cycle."""
-        system = LTVSystem.of(pair, "full", supports=supports)
-        laws = ToothLaws(pair)
+        return cls.of_laws(pair, LTVSystem.of(pair, "full", supports=supports), ToothLaws(pair), samples)
+
+    @classmethod
+    def of_laws(cls, pair: GearPair, system: LTVSystem, laws: ToothLaws, samples: int) -> Self:
+        """Return the search with a "full" system and laws that need not be those of the pair."""
         step = 1.0 / steps_of(system)
         fine = MomentaryRuns(pair, system, momentary_tables(laws, system, step, samples))
         outputs = samples // outputs_for_one(samples)

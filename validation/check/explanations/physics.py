@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Literal
 
 import numpy as np
@@ -23,7 +24,7 @@ from lumped.model.equations import THETA_G, THETA_P, X_G, X_P, Y_G, Y_P, Structu
 from lumped.model.mesh_cycle import MeshCycle
 from lumped.model.periodic_system import LTVSystem, supports_of
 from lumped.model.results import dataset
-from lumped.model.revolution_motion import labelled_motion
+from lumped.model.revolution_motion import plain_motion
 from lumped.model.steady import UNSTABLE, periodic_solution, sample_times
 from lumped.model.tooth_laws import ToothLaws
 from lumped.model.unilateral_motion import Shooting, motion_of_shooting
@@ -128,10 +129,12 @@ def motion_of(
         start = periodic_solution(system, np.zeros(1), estimate_error=False)
         if start.spectral_radius > _GROWS:
             raise NumericalError("The motion of the altered equations grows without bound.")
-    motion = motion_of_shooting(Shooting(pair, system, AlteredLaws(pair, physics), _SAMPLES), settles=settles)
+    shooting = Shooting.of_laws(pair, system, AlteredLaws(pair, physics), _SAMPLES)
+    motion = motion_of_shooting(shooting, settles=settles)
     if motion.spectral_radius > UNSTABLE:
         raise NumericalError("The periodic motion is unstable.")
-    labelled = labelled_motion(motion, provenance(pair, samples_per_cycle=_SAMPLES, contact="unilateral"))
+    origin = partial(provenance, pair, samples_per_cycle=_SAMPLES, contact="unilateral")
+    labelled = plain_motion(motion, origin).dataset
     return MotionCurves(pair, _with_bearing_forces(labelled, physics, system), motion.period, again)
 
 
