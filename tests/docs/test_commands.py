@@ -14,6 +14,7 @@ import yaml
 from tests.validation.measurements.synthetic import synthetic_measurement, write_measurement
 from typer.main import get_command
 from typer.testing import CliRunner
+from validation.measurements import MeasurementSpec, predict
 
 import lumped
 from validation.cli import app
@@ -22,7 +23,6 @@ from validation.cross_check import comparison
 from validation.exchange import write_results, write_rexs, write_state_space
 from validation.interactive import write_interactive_page
 from validation.interactive.results import Sampling
-from validation.measurements import MeasurementSpec, predict
 
 #: Commands that take longer than a few seconds or need a cluster: only their arguments are checked. That
 #: reports are written and compared is tested in tests/validation.
