@@ -28,7 +28,8 @@ TABLES = {path.stem: tomllib.loads(path.read_text(encoding="utf-8")) for path in
 
 def is_printed(value: float, text: str) -> bool:
     """Whether a value rounds to a printed one: half of its last digit, and the rounding of doubles."""
-    decimals = len(text.partition(".")[2])
+    _, _, decimals_of_text = text.partition(".")
+    decimals = len(decimals_of_text)
     return abs(value - float(text)) <= 0.5 * 10.0**-decimals + 1e-9
 
 

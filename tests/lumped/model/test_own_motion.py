@@ -358,7 +358,8 @@ class TestOfEveryPair:
 def test_ripple_of_the_torque_is_carried_to_the_other_shaft(loaded, form):
     # Far below every resonance the load follows the torque: N = (T + A cos)/r_b of order 5 of the pinion,
     # less what turns both inertias; J_g/(J_p + J_g) = 1/2 of it passes like gears.
-    ripple = [{"shaft": "pinion", "order": 5, "amplitude": 2.0, "phase": 90}]
+    order = 5
+    ripple = [{"shaft": "pinion", "order": order, "amplitude": 2.0, "phase": 90}]
     contact, touch = form.split()
     still = {"friction.coefficient": 0.0}
     pair = loaded.with_({"operating.torque_ripple": ripple, "mesh.contact": contact, **still})
@@ -366,7 +367,7 @@ def test_ripple_of_the_torque_is_carried_to_the_other_shaft(loaded, form):
         lumped.steady_state(pair.with_(operating__pinion_speed=200), contact=touch)
     run = lumped.steady_state(pair, samples_per_cycle=512, contact=touch)
     load = run.normal_load.sum("pair").values
-    first = 2.0 * np.fft.rfft(load)[5] / load.size * pair.geometry.base_radius_pinion
+    first = 2.0 * np.fft.rfft(load)[order] / load.size * pair.geometry.base_radius_pinion
     near = 5e-3 if contact == "loaded" else 0.1  # in fixed windows the load rings after each change
     assert abs(first) == pytest.approx(1.0, rel=near)
     assert np.angle(first) == pytest.approx(np.pi / 2.0, abs=near)
