@@ -5,11 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from validation.check.curves import Role
-from validation.files.formatting import quantity
+from validation.files.formatting import percent, quantity
 
 if TYPE_CHECKING:
     from validation.check.check import Check
     from validation.check.static import StaticRow
+
+__all__ = ["channel_words", "differs_words", "percent", "static_words", "subject"]
 
 #: Most static quantities, and most channels, in a sentence.
 _MOST = 3
@@ -18,12 +20,6 @@ _MOST = 3
 def subject(role: Role) -> str:
     """Return the grammatical subject of the sentences."""
     return "Your model" if role == "model" else "The record"
-
-
-def percent(share: float) -> str:
-    """Return a share in per cent with two digits: "3.1 %"."""
-    size = 100.0 * share
-    return f"{size:.0f} %" if size >= 9.95 else f"{size:.2g} %"
 
 
 def differs_words(check: Check) -> str:
@@ -70,8 +66,7 @@ def static_words(row: StaticRow) -> str:
 
 def channel_words(check: Check) -> str:
     """Return the channels that differ most, with their misfits."""
-    assert check.problem is not None
-    rows = sorted(check.problem.misfit.channels, key=lambda row: -row.total)
+    rows = sorted(check.nearer.channels, key=lambda row: -row.total)
     wrong = [row for row in rows if row.total > check.limit][:_MOST] or rows[:1]
     names = ", ".join(f"{row.channel.channel.name} {percent(row.total)}" for row in wrong)
     return f"Most in {names}"

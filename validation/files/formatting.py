@@ -155,3 +155,11 @@ def _joined(value: Any) -> Any:
     if isinstance(value, list):
         return [_joined(one) for one in value]
     return " ".join(value.split()) if isinstance(value, str) else value
+
+
+def percent(share: float) -> str:
+    """Return a share in per cent with two digits: "3.1 %". Below 0.01 % it is "0 %"."""
+    size = 100.0 * share
+    if size < 0.01:
+        return "0 %"
+    return f"{size:.0f} %" if size >= 9.95 else f"{size:.2g} %"
