@@ -12,7 +12,7 @@ Motion     predict, dynamic_factor: teeth only push; steady_state, simulate, run
            contact="linear", the default, or "unilateral"; response_branches, periodic_orbit
 Gears      geometry, mesh_stiffness, natural_frequencies, static_transmission_error, optimal_relief, bodies
 Trust      report, uncertainty, compare, crosscheck, validity_flags, attribution, power_balance
-Your model check: curves of another model, or a record, beside both programs
+Your model check: curves of another model, or a record, beside both programs; reference, reference_names
 Stability  stability_chart, stability_margins, stability_boundaries, campbell
 Any system PeriodicSystem, periodic_system, from_second_order, monodromy
 Signals    order_spectrum, waterfall, time_synchronous_average; more in spurcheck.validation.signals
@@ -76,6 +76,8 @@ if TYPE_CHECKING:  # the one list of the public names; below it is read at run t
     from validation import dynamic_factor as dynamic_factor
     from validation import plot as plot
     from validation import predict as predict
+    from validation import reference as reference
+    from validation import reference_names as reference_names
     from validation import report as report
     from validation import uncertainty as uncertainty
     from validation import validity_flags as validity_flags

@@ -7,6 +7,9 @@ from .prediction.motion import Prediction as Prediction
 from .prediction.motion import dynamic_factor as dynamic_factor
 from .prediction.motion import predict as predict
 from .prediction.uncertainty import uncertainty as uncertainty
+from .reference_cases.case import ReferenceCase as ReferenceCase
+from .reference_cases.case import reference as reference
+from .reference_cases.case import reference_names as reference_names
 from .reporting import Report as Report
 from .reporting import report as report
 from .validity.flags import Flag as Flag

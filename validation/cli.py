@@ -18,6 +18,7 @@ from validation.commands.check import check
 from validation.commands.compare import compare
 from validation.commands.files import export, init, presets
 from validation.commands.motion import interactive, simulate, teeth, uncertainty
+from validation.commands.reference import reference
 from validation.commands.report import crosscheck, report
 from validation.commands.response import response
 from validation.commands.stability import floquet, stability
@@ -111,7 +112,7 @@ def paragraphs(text: str | None) -> str:
 
 COMMANDS = (
     *(report, presets, init, simulate, export, crosscheck, uncertainty, compare, check, stability, floquet),
-    *(response, teeth, interactive, sweep),
+    *(response, teeth, interactive, sweep, reference),
 )
 for command in COMMANDS:
     app.command(cls=Once, help=paragraphs(command.__doc__))(command)

@@ -34,6 +34,7 @@ def writers() -> Mapping[str, Callable[[], str]]:
         mutants,
         paper,
         rankings,
+        reference_cases,
         schema,
         verification,
     )
@@ -48,6 +49,7 @@ def writers() -> Mapping[str, Callable[[], str]]:
             errata,
             paper,
             rankings,
+            reference_cases,
             schema,
             interface,
             diagrams,

@@ -14,8 +14,9 @@ from lumped import GearPair, geometry, load_gear_pair, preset_names
 from lumped.errors import ParameterError
 from lumped.schema.files import preset_text
 from lumped.schema.pair import field_at
-from tests.validation.records.test_import import TEXT as RECORD
-from validation.measurements import load_measurement
+from tests.validation.check.test_descriptions import TEXT as RECORD
+from validation.check.curves import Curves
+from validation.check.reading.reader import read
 from validation.studies import Study, load_study
 
 SECONDS = 10.0
@@ -157,6 +158,10 @@ def test_broken_parameter_and_study_files(within, tmp_path_factory, text, study)
         assert load_study(found.to_toml()) == found
 
 
+def read_record(path):
+    return read(path, load_gear_pair("nasa_28_28"))
+
+
 #: Dotted keys take the square of their parts to read: these would take hours. Comparing each problem with
 #: each other one, or each key with the known ones, would take minutes.
 LONG = {
@@ -170,7 +175,7 @@ LONG = {
 @pytest.mark.parametrize("text", LONG.values(), ids=LONG)
 def test_very_long_files_are_refused_at_once(within, tmp_path, text):
     (tmp_path / "x.toml").write_text(text)
-    for load in (load_gear_pair, load_study, load_measurement):
+    for load in (load_gear_pair, load_study, read_record):
         with within(SECONDS):
             assert accepted_or_refused(load, tmp_path / "x.toml") is None
 
@@ -272,13 +277,13 @@ noise = 5.0
 @example(description=DESCRIPTION, record=RECORD)
 @example(description=DESCRIPTION, record="a" + " " * 20_000 + "b;c\n")
 @example(description=DESCRIPTION, record='"' + "x" * 200_000 + ";c\n")
-def test_broken_measurements(within, tmp_path_factory, description, record):
+def test_broken_records(within, tmp_path_factory, description, record):
     folder = tmp_path_factory.mktemp("record")
     for name, text in (("record.toml", description), ("record.csv", record)):
         (folder / name).write_text(text, encoding="utf-8", errors="surrogatepass", newline="")
     with within(SECONDS):
-        measurement = accepted_or_refused(load_measurement, folder / "record.toml")
-    assert measurement is not None or (description, record) != (DESCRIPTION, RECORD)
-    if measurement is not None:
-        assert np.isfinite(measurement.abscissa).all()
-        assert all(np.isfinite(values).all() for values in measurement.channels.values())
+        curves = accepted_or_refused(read_record, folder / "record.toml")
+    assert curves is not None or (description, record) != (DESCRIPTION, RECORD)
+    if isinstance(curves, Curves):
+        assert np.isfinite(curves.places).all()
+        assert all(np.isfinite(channel.values).all() for channel in curves.channels)

@@ -24,7 +24,7 @@ from lumped.schema.pair import GearPair
 from validation.check.curves import Curves, Role, ValuesOverSpeed
 from validation.check.ladder import Explanation, Ladder, climb
 from validation.check.mesh_frequency import SAME
-from validation.check.misfit import Misfit
+from validation.check.misfit import LIMIT, Misfit
 from validation.check.motion_curves import MotionCurves
 from validation.check.over_speed import SpeedMisfit, speed_misfit
 from validation.check.overlay import figure_data
@@ -39,8 +39,6 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-#: Default limit of the misfit.
-LIMIT = 0.05
 #: Default processor time of the search for explanations [s].
 BUDGET = 60.0
 #: A change between the last two blocks of cycles above this share of the motion is no settled motion.
@@ -404,4 +402,8 @@ def _remarks(problem: Problem) -> tuple[str, ...]:
     ]
     if removed:
         remarks.append(f"Without their means, which were removed: {', '.join(removed)}.")
+    shown = {row.channel.channel.name for row in problem.misfit.channels}
+    unseen = [channel.name for channel in problem.curves.channels if channel.name not in shown]
+    if unseen:
+        remarks.append(f"Not compared, no whole engagement in the samples: {', '.join(unseen)}.")
     return tuple(remarks)

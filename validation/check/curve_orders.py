@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lumped.errors import refuse
+from lumped.errors import ParameterError, refuse
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 from validation.check.curves import Channel
@@ -36,6 +36,9 @@ _PER_NUMBER = 4
 _SAMPLES = 512
 #: Mesh cycles from which on a line and the mesh orders are told apart.
 _LINE_AND_ORDERS = 1.5
+#: Parts of a mesh cycle, and the share of the parts of an engagement that the samples of a pair must show.
+_PLACES = 16
+_SEEN = 0.95
 #: Mesh cycles in a bin of the search for the coarse shift.
 BIN = 1.0 / 32.0
 
@@ -134,19 +137,40 @@ def orders_of_channel(
         action = "Count the mesh cycles until the same labelled pair is in contact again."
         raise refuse("recurrence", motion.recurrence, f">= {period}", action)
     since = motion.age(cycles + shift, channel.tooth_pair)
-    inside = since < first + period
+    # The shift is known to a bin: what seems to be a bin before the first contact may be the first contact.
+    since = np.where(since >= motion.recurrence + first - BIN, since - motion.recurrence, since)
+    inside = since < first - BIN + period
     most = resolved_orders(cycles[inside], period, most_orders)
     if most < 1:
         allowed = f"curves in which pair {channel.tooth_pair} is in contact for many samples"
         refused = f"{np.count_nonzero(inside)} samples in contact"
         raise refuse(f"channel {channel.name}", refused, allowed, "Give more; check pair and recurrence.")
-    passed = cycles[inside] + shift - PAIR_LABELS.index(channel.tooth_pair) - first
+    passed = cycles[inside] + shift - PAIR_LABELS.index(channel.tooth_pair) - first + BIN
     engagement = np.floor(passed / motion.recurrence).astype(np.int64)
-    # Less the shift, so that one shift puts our motion in the phase of every channel.
-    fractions = np.arange(1, most * period + 1) / period
-    return complex_orders(
-        since[inside] - shift, channel.values[inside], fractions, period=period, blocks=engagement
-    )
+    while True:
+        # Less the shift, so that one shift puts our motion in the phase of every channel.
+        fractions = np.arange(1, most * period + 1) / period
+        try:
+            return complex_orders(
+                since[inside] - shift, channel.values[inside], fractions, period=period, blocks=engagement
+            )
+        except ParameterError:  # the samples leave out a part of the engagement
+            if most == 1:
+                raise
+            most = most // 2
+
+
+def shows_contact(channel: Channel, cycles: FloatArray, motion: MotionCurves, shift: float) -> bool:
+    """Return whether the samples of a channel show its tooth pair in contact from end to end.
+
+    Arguments as of ``orders_of_channel``. A channel of the whole mesh always does.
+    """
+    if channel.tooth_pair is None:
+        return True
+    first = int(motion.ahead.min())
+    since = motion.age(cycles + shift, channel.tooth_pair) - first
+    places = np.unique(np.floor(_PLACES * since[since < motion.ahead.size]).astype(np.int64))
+    return bool(places.size >= _SEEN * _PLACES * motion.ahead.size)
 
 
 def orders_of_motion(motion: MotionCurves, channel: Channel, like: ComplexOrders) -> ComplexOrders:

@@ -4,7 +4,8 @@
 
 U_m are the complex orders of the other model, V_m those of our motion, s the one shift in time of all
 channels. ``scale`` is the amplitude of the larger of both motions, so that e is 0 for equal motions, about 1
-where one motion is zero, and never explodes where one model leaves a channel at rest.
+where one motion is zero, and never explodes where one model leaves a channel at rest. The expected square of
+the noise of the samples is taken from |U_m - V_m|^2.
 
 Sources: docs/how_to/check_your_model.md, "Misfit".
 """
@@ -25,6 +26,8 @@ from validation.check.motion_curves import MotionCurves
 from validation.check.quantities import Quantity
 from validation.signals.complex_orders import LEAST, ComplexOrders, common_shift
 
+#: Default limit of the misfit of curves that agree.
+LIMIT = 0.05
 #: A mean below this share of our mean is a mean that an exporter or a sensor removed. The mean of a record
 #: that is no whole number of cycles is not quite that of a cycle.
 _REMOVED = 0.05
@@ -52,8 +55,14 @@ class ChannelMisfit(NamedTuple):
 
     @property
     def motion(self) -> float:
-        """Misfit of the orders above 0."""
-        return float(np.linalg.norm(self.channel.orders.values - self.ours.values)) / self.scale
+        """Misfit of the orders above 0, without what the noise of the samples adds in the mean."""
+        difference = float(np.linalg.norm(self.channel.orders.values - self.ours.values))
+        return math.sqrt(max(difference**2 - self.noise**2, 0.0)) / self.scale
+
+    @property
+    def noise(self) -> float:
+        """Root of the expected square of the noise in all orders, in the unit of the channel."""
+        return math.sqrt(max(float(np.trace(self.channel.orders.covariance)), 0.0))
 
     @property
     def mean(self) -> float:
@@ -83,8 +92,12 @@ class Misfit:
 
     @property
     def value(self) -> float:
-        """e: root of the mean of the squares over all channels."""
-        return float(np.sqrt(np.mean([channel.total**2 for channel in self.channels])))
+        """e: root of the mean of the squares over all channels. All tooth pairs count as one channel."""
+        squares: dict[str, list[float]] = {}
+        for channel in self.channels:
+            one = channel.channel.channel
+            squares.setdefault(one.quantity if one.tooth_pair else one.name, []).append(channel.total**2)
+        return float(np.sqrt(np.mean([np.mean(of_channel) for of_channel in squares.values()])))
 
 
 def misfit_of(

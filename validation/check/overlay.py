@@ -39,9 +39,9 @@ def overlay(problem: Problem, *, bins: int = 64) -> xr.Dataset:
     NumericalError : no sample of a tooth pair is in contact
     """
     misfits = {row.channel.channel.name: row for row in problem.misfit.channels}
+    channels = tuple(row.channel.channel for row in problem.misfit.channels)
     rows = [
-        _binned(_samples(problem, channel, misfits[channel.name].compares_mean), bins)
-        for channel in problem.curves.channels
+        _binned(_samples(problem, channel, misfits[channel.name].compares_mean), bins) for channel in channels
     ]
     dims = ("channel", "bin")
     columns = {
@@ -51,7 +51,6 @@ def overlay(problem: Problem, *, bins: int = 64) -> xr.Dataset:
         "scatter": (_BY_CHANNEL, "standard deviation of theirs less ours in the bin"),
         "samples": ("1", "samples in the bin"),
     }
-    channels = problem.curves.channels
     return labelled_dataset(
         {
             name: (dims, np.stack([getattr(row, name) for row in rows]), unit, words)
@@ -88,7 +87,7 @@ class _Bins(NamedTuple):
 
 def _samples(problem: Problem, channel: Channel, with_mean: bool) -> _Samples:
     """Settled samples of one channel; for a channel of one tooth pair only the samples in contact."""
-    used = problem.settled.used
+    used = problem.used(channel)
     cycles = problem.cycles[used] + problem.misfit.shift
     motion = problem.motion.mean_cycle()
     theirs = channel.values[used]

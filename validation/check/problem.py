@@ -9,8 +9,14 @@ from functools import cached_property
 import numpy as np
 
 from lumped.schema.pair import GearPair
-from lumped.typing import FloatArray
-from validation.check.curve_orders import ChannelOrders, coarse_shift, compared_orders, orders_of_channel
+from lumped.typing import BoolArray, FloatArray
+from validation.check.curve_orders import (
+    ChannelOrders,
+    coarse_shift,
+    compared_orders,
+    orders_of_channel,
+    shows_contact,
+)
 from validation.check.curves import Channel, Curves
 from validation.check.mesh_frequency import Frequency, mesh_frequency, nominal_cycles
 from validation.check.misfit import Misfit, misfit_of
@@ -88,21 +94,32 @@ class Problem:
 
     def orders_of(self, channels: Iterable[Channel]) -> tuple[ChannelOrders, ...]:
         """Return channels, with samples at the times of the curves, by their orders."""
-        used = self.settled.used
         shift = self.given_shift if self.given_shift is not None else self.coarse_shift or 0.0
-        return tuple(
-            ChannelOrders(
-                channel,
-                orders_of_channel(
-                    replace(channel, values=channel.values[used]),
-                    self.cycles[used],
-                    self.orders,
-                    self.motion,
-                    shift,
-                ),
-            )
-            for channel in channels
-        )
+        listed = list(channels)
+        shown = [channel for channel in listed if self._shows(channel, shift)]
+        result = []
+        for channel in shown or listed:
+            used = self.used(channel)
+            settled_channel = replace(channel, values=channel.values[used])
+            orders = orders_of_channel(settled_channel, self.cycles[used], self.orders, self.motion, shift)
+            result.append(ChannelOrders(channel, orders))
+        return tuple(result)
+
+    def used(self, channel: Channel) -> BoolArray:
+        """(k,) samples of a channel that are compared.
+
+        All samples of a tooth pair where the settled part is too short to show it from end to end.
+        """
+        settled_cycles = float(np.ptp(self.cycles[self.settled.used]))
+        if channel.tooth_pair is not None and settled_cycles < 2 * self.motion.recurrence + 1:
+            return np.ones(self.cycles.size, dtype=bool)
+        return self.settled.used
+
+    def _shows(self, channel: Channel, shift: float) -> bool:
+        """Whether the compared samples show the tooth pair of a channel from end to end."""
+        used = self.used(channel)
+        settled_channel = replace(channel, values=channel.values[used])
+        return shows_contact(settled_channel, self.cycles[used], self.motion, shift)
 
     def misfit_with(self, motion: MotionCurves, theirs: tuple[ChannelOrders, ...] | None = None) -> Misfit:
         """Return the misfit of channels (by default those of the curves) and another motion of ours."""

@@ -112,7 +112,7 @@ def read_second_order(path: str | Path) -> SecondOrderModel:
 
     Parameters
     ----------
-    path : .npz or .mat (up to MATLAB 7) with
+    path : .npz or .mat with
 
         - ``M``, ``K`` (n, n) and ``period`` [s]; optional ``C``; optional ``G``: G times 2 pi/period is added
           to C. If the period is one turn, G is the gyroscopic matrix
@@ -144,7 +144,7 @@ def _fields(path: Path) -> dict[str, Any]:
     try:
         return _arrays(path)
     except Exception as error:  # noqa: BLE001  (readers raise anything of a damaged file)
-        allowed = "a .npz of arrays or a .mat up to version 7"
+        allowed = "a .npz of arrays or a .mat of arrays"
         raise refuse("path", path, allowed, f"{advice} ({shown(str(error), 120)})") from None
 
 

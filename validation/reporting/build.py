@@ -6,7 +6,7 @@ import json
 import time
 import warnings
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
@@ -16,16 +16,18 @@ import xarray as xr
 
 from lumped import GearPair, LawRangeWarning, load_gear_pair
 from lumped.arguments import file_path, real_number
+from lumped.errors import refuse
 from lumped.labelling import source_hash
 from lumped.model.periodic_system import Supports, with_supports
 from lumped.outcomes import Absent, Outcome
 from lumped.typing import Progress
+from validation.check.curves import Curves
+from validation.check.reading.reader import read
 from validation.check.record.channel_comparison import Record
 from validation.check.record.comparing import check_record
 from validation.check.record.record_comparison import RecordComparison
 from validation.files.folder import FORMAT, FORMAT_VERSION, whole_folder
 from validation.files.output import write_dataset
-from validation.measurements.record import load_measurement
 from validation.reporting.blocks import Picture, Table, chapter_data, plain
 from validation.reporting.chapter import Chapter, Written
 from validation.reporting.chapters import CHAPTERS
@@ -95,7 +97,8 @@ def report(
     out : folder, new or empty
     force : replace an earlier report in that folder
     quick : coarser sampling, inputs not varied, for a first look
-    record : description of a measured record at this speed and torque (TOML)
+    record : a measured record at this speed and torque: its description (TOML) or a table, as of
+        ``spurcheck.check``
     compare : report.json of an earlier report, or its folder
     tolerance : relative change of a number that passes in this comparison
     name : how commands name the pair, its file or preset; default the pair's name
@@ -117,9 +120,7 @@ def report(
     target = file_path("out", out)
     earlier = None if compare is None else load_report(compare, quick=quick)
     real_number("--tolerance", tolerance, 0.0, 1.0, action="0.001 lets numbers change by 0.1 %.")
-    measured = None if record is None else load_measurement(record).curves()
-    if measured is not None:
-        check_record(measured, gear_pair)  # refused before any work
+    measured = None if record is None else _record(record, gear_pair)  # refused before any work
     with whole_folder(target, force=force) as folder, warnings.catch_warnings():
         # The page says where a law is outside its range at the operating point; each speed and sample more
         # would say it again.
@@ -153,6 +154,17 @@ def report(
     seconds = time.perf_counter() - started
     compared = results.measured_error
     return Report(target, first, failed_checks(results), findings(results), seconds, changes, compared)
+
+
+def _record(source: str | Path, pair: GearPair) -> Curves:
+    """Read a measured record of the pair. Another speed or torque than that of the pair is refused."""
+    curves = read(source, pair)
+    if not isinstance(curves, Curves):
+        action = "Check values over speed by spurcheck check."
+        raise refuse("record", source, "samples at one speed", action)
+    record = replace(curves, role="measurement")
+    check_record(record, pair)
+    return record
 
 
 def findings(results: Results) -> frozenset[str]:

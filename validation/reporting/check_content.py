@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from validation.check.check import Check, Rung
+from validation.check.ladder import Ladder
 from validation.check.ladder_data import ladder_data
 from validation.check.misfit import ChannelMisfit
 from validation.check.over_speed import SpeedMisfit
@@ -55,7 +56,9 @@ def parts_of(check: Check) -> tuple[CheckPart, ...]:
     if check.problem is not None:
         parts.append(CheckPart("motion", "The motion", motion_content(check)))
     if check.ladder is not None:
-        parts.append(CheckPart("explanations", "What would explain it", ladder_content(check)))
+        assert check.problem is not None
+        content = ladder_content(check.problem, check.ladder, check.limit)
+        parts.append(CheckPart("explanations", "What would explain it", content))
     if check.over_speed is not None:
         parts.append(CheckPart("over_speed", "Over speed", _speed_content(check)))
     return tuple(parts)
@@ -275,12 +278,9 @@ class _StepRow(NamedTuple):
     misfit: float
 
 
-def ladder_content(check: Check) -> Content:
-    """Write the chapter of the explanations: bars that fall, and what the curves do not tell apart."""
-    assert check.problem is not None
-    assert check.ladder is not None
-    ladder = check.ladder
-    who = subject(check.role)
+def ladder_content(problem: Problem, ladder: Ladder, limit: float) -> Content:
+    """Write the explanations of a misfit: bars that fall, and what the curves do not tell apart."""
+    who = subject(problem.curves.role)
     if not ladder.steps:
         words = "No named explanation makes the difference much smaller."
         return Content(words, (Text(f"{ladder.runs} motions were computed."),))
@@ -314,7 +314,7 @@ def ladder_content(check: Check) -> Content:
     picture = Picture(
         "explanations",
         "The misfit after each step. Dashed: the limit.",
-        ladder_data(check.problem, ladder, check.limit),
+        ladder_data(problem, ladder, limit),
         ladder_figure,
     )
     return Content(words, (picture, table, Text(f"{ladder.runs} motions were computed.")))

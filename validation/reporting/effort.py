@@ -22,6 +22,7 @@ class Effort:
     name : name in sentences, "full report" or "quick report"
     sample_seconds : processor time of the samples [s]
     band_seconds : processor time of each range from ``band_samples`` [s]
+    explain_seconds : processor time of the search for what a record that contradicts is compatible with [s]
     """
 
     samples: int
@@ -36,7 +37,8 @@ class Effort:
     name: str
     sample_seconds: float = 30.0
     band_seconds: float = 10.0
+    explain_seconds: float = 20.0
 
 
 FULL = Effort(128, 32, 41, 160, 1601, 101, 61, 30.0, 8, "full report")
-QUICK = Effort(0, 0, 0, 96, 401, 41, 25, 5.0, 0, "quick report")
+QUICK = Effort(0, 0, 0, 96, 401, 41, 25, 5.0, 0, "quick report", explain_seconds=5.0)

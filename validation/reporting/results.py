@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from contextlib import suppress
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -26,6 +27,11 @@ from lumped.outcomes import Absent, Outcome
 from lumped.schema.pair import GearPair
 from lumped.typing import IntArray, Progress
 from validation.check.curves import Curves
+from validation.check.ladder import Ladder, climb
+from validation.check.misfit import LIMIT
+from validation.check.motion_curves import MotionCurves
+from validation.check.problem import Problem
+from validation.check.record.channel_comparison import Record
 from validation.check.record.comparing import compare_record
 from validation.check.record.record_comparison import RecordComparison
 from validation.cross_check.comparison import CrossCheck, crosscheck
@@ -77,6 +83,14 @@ _ABOUT = 0.1
 _MANY = 300.0
 #: Output times in a mesh cycle of the second program on shafts.
 _SAMPLES = 512
+
+
+class RecordExplanations(NamedTuple):
+    """What a record is compatible with: record and motion, search, and the limit of the misfit."""
+
+    problem: Problem
+    ladder: Ladder
+    limit: float
 
 
 class Results:
@@ -401,6 +415,21 @@ class Results:
         if varied is not None and len(varied.samples) < least_samples(varied.asked, LEAST_BAND):
             varied = None
         return compare_record(self.record, self.prediction, numerical=numerical, varied=varied)
+
+    @cached_property
+    def record_explanations(self) -> RecordExplanations | None:
+        """What a record that contradicts the prediction is compatible with. None: no record contradicts."""
+        if self.record is None or self.measured_error is None:
+            return None
+        if self.measured_error.verdict is not Record.CONTRADICTS:
+            return None
+        self.stage("what would explain the record")
+        prediction = self.prediction
+        again = self.record.recurrence or prediction.pair.pinion.teeth
+        motion = MotionCurves(prediction.pair, prediction.cycle, prediction.mesh_cycles, again)
+        problem = Problem.of(prediction.pair, self.record, motion)
+        ladder = climb(problem, limit=LIMIT, budget=self.effort.explain_seconds)
+        return RecordExplanations(problem, ladder, LIMIT)
 
     @property
     def _motions(self) -> tuple[xr.Dataset, ...]:

@@ -12,7 +12,7 @@ from lumped.typing import FloatArray
 from validation.check.reading.facts import Facts, finite, real_values, scaled
 from validation.check.reading.meaning import AbscissaKind, abscissa_of, understood
 from validation.check.reading.table import Column, Table, listed
-from validation.check.reading.units import si_factor
+from validation.check.reading.units import converts, si_factor
 
 #: Least part of a pitch over which angles are an abscissa.
 _LEAST_TURN = 0.5
@@ -47,7 +47,8 @@ def abscissa_place(table: Table, facts: Facts, pair: GearPair) -> Place | None:
         if found := abscissa_of(column.heading):
             kind, heading = found
             candidates.setdefault(kind, []).append((column, column.unit or heading.unit))
-    for kind in ("time", "mesh_phase", "order"):
+    candidates = {kind: _with_fitting_unit(kind, named) for kind, named in candidates.items()}
+    for kind in ("time", "order", "mesh_phase"):
         if candidates.get(kind):
             return _placed(kind, candidates[kind], facts)
     for kind, quantity in (("pinion_angle", "theta_p"), ("gear_angle", "theta_g")):
@@ -62,6 +63,20 @@ def abscissa_place(table: Table, facts: Facts, pair: GearPair) -> Place | None:
             ratio = pair.gear.teeth / pair.pinion.teeth
             return place if kind == "speed" else Place("speed", place.values * ratio, place.heading)
     return None
+
+
+def _with_fitting_unit(
+    kind: AbscissaKind, named: list[tuple[Column, str | None]]
+) -> list[tuple[Column, str | None]]:
+    """Columns whose unit is one of the abscissa; all columns where no unit is, so that they are refused.
+
+    In the columns t [s] and T [N m] the second one is no time.
+    """
+    units = ("1", "rad") if kind == "mesh_phase" else (SI_OF_ABSCISSA[kind],)
+    fitting = [
+        (column, unit) for column, unit in named if unit is None or any(converts(unit, si) for si in units)
+    ]
+    return fitting or named
 
 
 def _columns_of(table: Table, quantity: str) -> list[tuple[Column, str | None]]:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from lumped.errors import refuse, shown
 from validation.check.curves import STATICS
 from validation.check.quantities import PAIR_LABELS, QUANTITIES
+from validation.check.reading.attributes import operating_point, text_of
 from validation.check.reading.meaning import abscissa_of, understood, value_over_speed
 from validation.check.reading.places_of_pairs import heading_of_place
 from validation.check.reading.table import MOST_COLUMNS, Column, Table, listed, numbers_of
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 _DEEPEST = 8
 #: Sections of a file of results that are about its arrays.
 _UNITS = "units."
+_ATTRIBUTES = "attributes."
 _ABOUT = ("units.", "long_names.", "dimensions.", "attributes.")
 #: Fields of a Simulink "Structure with time" beside the values of a signal.
 _ABOUT_SIGNALS = (
@@ -47,9 +49,13 @@ def table_of_mapping(source: Mapping[Any, Any], name: str, remarks: tuple[str, .
     flat = list(_without_structures(_flat(source)))
     if len(flat) > MOST_COLUMNS:
         raise refuse("theirs", f"{len(flat)} arrays", f"<= {MOST_COLUMNS}", "Give the arrays to compare.")
-    units = {one.path.removeprefix(_UNITS): str(one.value) for one in flat if one.path.startswith(_UNITS)}
+    units = {one.path.removeprefix(_UNITS): text_of(one.value) for one in flat if one.path.startswith(_UNITS)}
+    attributes = {
+        one.path.removeprefix(_ATTRIBUTES): one.value for one in flat if one.path.startswith(_ATTRIBUTES)
+    }
     flat = [one for one in flat if not one.path.startswith(_ABOUT)]
-    stated: dict[str, Any] = {}
+    one_speed = not any(one.path == "speed" for one in flat)
+    stated: dict[str, Any] = operating_point(attributes, one_speed=one_speed)
     arrays: list[tuple[str, NDArray[Any], str | None]] = []
     unused = []
     headings = _short([one.path for one in flat])
@@ -151,7 +157,7 @@ def _signals(title: str, values: Any) -> Iterator[_Named]:
 
 
 def _short(paths: list[str]) -> list[str]:
-    """Shortest ends of paths that are understood and different; a path that is not understood is unchanged."""
+    """Longest ends of paths that are understood; a path that is not understood is unchanged."""
     result = []
     for path in paths:
         parts = path.split(".")

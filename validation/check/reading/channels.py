@@ -79,10 +79,11 @@ def _note_assumptions(uses: list[_Use], facts: Facts) -> None:
 
 def note_not_used(not_used: list[str], facts: Facts) -> None:
     """Note columns that are not used, with names that are near to theirs."""
+    not_used = [name for name in not_used if name.strip()]
     if not_used:
         count = f"{len(not_used)} columns were" if len(not_used) > 1 else "1 column was"
-        near = [text for name in not_used[:8] if (text := nearest(name.lower(), names_to_type()))]
-        facts.remarks.append(" ".join([f"{count} not used: {listed(not_used)}.", *near[:2]]))
+        near = [text for name in not_used[:3] if (text := nearest(name.lower(), names_to_type()))]
+        facts.remarks.append(" ".join([f"{count} not used: {listed(not_used)}.", *dict.fromkeys(near)]))
 
 
 def no_channel(not_used: list[str], further: str = "") -> ParameterError:

@@ -9,8 +9,8 @@ import h5py
 import numpy as np
 
 from lumped.errors import ParameterError, refuse, shown
-from lumped.fields.text_file import parse_toml
 from validation.check.quantities import QUANTITIES
+from validation.check.reading.attributes import operating_point
 from validation.check.reading.meaning import abscissa_of
 from validation.check.reading.places_of_pairs import heading_of_place
 from validation.check.reading.table import Column, Table, listed, numbers_of
@@ -44,7 +44,12 @@ def table_of_dataset(data: xr.Dataset, name: str) -> Table:
         elif variable.dims not in ((), ("pair",)):
             unused.append(heading)
     remarks = (f"Not over {dimension} alone, and not used: {listed(unused)}.",) if unused else ()
-    return Table(name, tuple(columns), _operating_point(data), remarks=remarks)
+    return Table(
+        name,
+        tuple(columns),
+        operating_point(data.attrs, one_speed="speed" not in data.sizes),
+        remarks=remarks,
+    )
 
 
 def _of_pair(name: str) -> bool:
@@ -64,32 +69,16 @@ def _dimension(data: xr.Dataset) -> str:
     raise refuse("theirs", f"dimensions {sizes}", "a dimension 'time', 'order' or 'speed'", action)
 
 
-def _operating_point(data: xr.Dataset) -> dict[str, Any]:
-    """Speed and torque of the attributes; of the parameters that a result of this program carries."""
-    stated: dict[str, Any] = {}
-    for key in ("pinion_torque", "pinion_speed"):
-        value = data.attrs.get(key)
-        if isinstance(value, str) or key == "pinion_torque":
-            stated[key] = value
-    parameters = data.attrs.get("parameters")
-    if isinstance(parameters, str) and "speed" not in data.sizes:
-        try:
-            operating = parse_toml(parameters, "parameters").get("operating", {})
-        except ParameterError:
-            operating = {}
-        speed = operating.get("pinion_speed") if isinstance(operating, dict) else None
-        if isinstance(speed, (int, float, str)):
-            stated["pinion_speed"] = speed if isinstance(speed, str) else f"{float(speed)!r} rpm"
-    return {key: value for key, value in stated.items() if value is not None}
-
-
 def read_netcdf_table(path: Path, field: str) -> Table:
     """Read a NetCDF file. A file whose variables claim more than ``MOST_BYTES`` is refused before."""
     import xarray as xr
 
     try:
         _check_links(path)
-        with xr.open_dataset(path, decode_times=False, mask_and_scale=False) as opened:
+        options: dict[str, Any] = {"engine": "scipy"}
+        if h5py.is_hdf5(path):
+            options = {"engine": "h5netcdf", "phony_dims": "sort"}
+        with xr.open_dataset(path, decode_times=False, mask_and_scale=False, **options) as opened:
             if opened.nbytes > MOST_BYTES:
                 raise ValueError(f"it claims to hold {opened.nbytes:.3g} bytes")
             data = opened.load()

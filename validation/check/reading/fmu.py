@@ -27,12 +27,14 @@ from validation.files.matlab import check_size
 
 #: Communication steps in a mesh cycle.
 _SAMPLES = 512
-#: Mesh cycles of the simulations one after the other, until the last two mesh cycles agree.
+#: Mesh cycles of the simulations one after the other, until the motion of half the time is that of the end.
 _CYCLES = (64, 256, 1024)
 #: Mesh cycles that are kept.
 _KEPT = 16
-#: Largest difference of the last two mesh cycles of a settled motion, over the motion.
+#: Largest difference of both mesh cycles of a settled motion, over the motion.
 _SETTLED = 1e-3
+#: Rounding of a value, over the largest value.
+_ROUNDING = 1e-9
 #: Seconds after which a simulation is ended.
 _PATIENCE = 600.0
 #: Most variables that are listed in a refusal.
@@ -92,7 +94,7 @@ def read_fmu(path: Path, pair: GearPair, field: str = "theirs", names: tuple[str
     for cycles in _CYCLES:
         request = {"stop": cycles * period, "step": step, "names": [one.name for one in chosen]}
         values = _simulated(path, request, field)
-        settled = _repeats([values[one.name] for one in chosen], values["time"], period)
+        settled = _repeats(chosen, values, cycles, period)
         if settled:
             break
     first = int(np.searchsorted(values["time"], (cycles - _KEPT - 0.5 / _SAMPLES) * period))
@@ -160,14 +162,28 @@ def _run(path: Path, target: Path, request: dict[str, Any] | None, field: str) -
         raise refuse(field, path, "an FMU that FMPy simulates", action)
 
 
-def _repeats(values: list[FloatArray], time: FloatArray, period: float) -> bool:
-    """Whether the last two mesh cycles agree, but for a trend as of rotations."""
-    end = time[-1]
-    phases = np.arange(_SAMPLES) / _SAMPLES * period
-    for one in values:
-        last, before, earlier = (np.interp(end - k * period + phases, time, one) for k in (1, 2, 3))
-        drift = last - before
-        size = float(np.ptp(last - drift.mean() * phases / period))
-        if np.abs(drift - (before - earlier).mean()).max() > _SETTLED * max(size, 1e-300):
+def _repeats(chosen: list[_Variable], values: dict[str, FloatArray], cycles: int, period: float) -> bool:
+    """Whether the last mesh cycle is that of half the time, of all variables."""
+    phases = np.arange(_SAMPLES) / _SAMPLES - 1.0
+    for one in chosen:
+        known = understood(one.name)
+        is_rotation = known is not None and known.meaning.quantity in ("theta_p", "theta_g")
+        late, early = (
+            _cycle(values["time"], values[one.name], (cycles - back + phases) * period, is_rotation)
+            for back in (0, cycles // 2)
+        )
+        rounding = _ROUNDING * float(np.abs(values[one.name]).max())
+        if np.abs(late - early).max() > _SETTLED * float(np.ptp(late)) + rounding:
             return False
     return True
+
+
+def _cycle(time: FloatArray, values: FloatArray, places: FloatArray, is_rotation: bool) -> FloatArray:
+    """Samples of one mesh cycle; of a rotation without its mean and its trend over the mesh cycle."""
+    cycle = np.interp(places, time, values)
+    if not is_rotation:
+        return cycle
+    period = places[-1] - places[0] + places[1] - places[0]
+    start, end = np.interp([places[0], places[0] + period], time, values)
+    cycle = cycle - (end - start) * (places - places[0]) / period
+    return np.asarray(cycle - cycle.mean())

@@ -52,10 +52,11 @@ def readings(heading: str) -> Iterator[Heading]:
         yield Heading(f"{before} {inside} {after}".strip(), None)
         yield Heading(name, inside)
         return
+    if (match := _BEHIND.match(text)) and is_unit(match[2]):
+        yield Heading(match[1], match[2])
     yield Heading(text, None)
-    for pattern in (_BEHIND, _LAST):
-        if (match := pattern.match(text)) and is_unit(match[2]):
-            yield Heading(match[1], match[2])
+    if (match := _LAST.match(text)) and is_unit(match[2]):
+        yield Heading(match[1], match[2])
 
 
 def words_of(text: str) -> list[str]:

@@ -13,7 +13,7 @@ from validation.check.reading.headings import Heading, readings, words_of
 
 Statistic = Literal["peak_to_peak", "rms", "mean", "order"]
 #: Kinds of abscissa in the order in which one is chosen.
-AbscissaKind = Literal["time", "mesh_phase", "order", "pinion_angle", "gear_angle", "speed", "gear_speed"]
+AbscissaKind = Literal["time", "order", "mesh_phase", "pinion_angle", "gear_angle", "speed", "gear_speed"]
 #: Part of a complex amplitude over the order.
 Part = Literal["amplitude", "phase", "real", "imag"]
 
@@ -35,8 +35,14 @@ class Meaning(NamedTuple):
 
 _GEAR_WORDS = {
     **dict.fromkeys(("p", "pinion", "1", "ritzel", "driver", "driving", "input", "antrieb"), "p"),
-    **dict.fromkeys(("g", "2", "wheel", "rad", "driven", "output", "abtrieb"), "g"),
+    **dict.fromkeys(("g", "2", "wheel", "driven", "output", "abtrieb"), "g"),
 }
+#: "Rad" is the gear where a German word stands beside it; else it is a unit.
+_GERMAN = {
+    "drehzahl", "drehwinkel", "winkel", "lagerkraft", "verschiebung", "weg", "geschwindigkeit",
+    "beschleunigung",
+    "winkelgeschwindigkeit", "verdrehung", "zahnmoment", "eingriffsmoment",
+}  # fmt: skip
 _NUMBERS = ("1", "2")
 _AXIS_WORDS = {"x": "x", "loa": "x", "y": "y", "oloa": "y"}
 #: Phrases that become one word before the words are split.
@@ -49,8 +55,9 @@ _PHRASES = (
     (re.compile(r"\brev(olutions)?[ _/-]*min\b", re.I), "rpm"),
 )  # fmt: skip
 _FILLERS = {
-    "the", "of", "on", "in", "at", "der", "des", "am", "im", "dynamic", "dyn", "signal", "total", "sum",
-    "all", "pairs", "dynamische", "dynamischer", "channel", "cm", "mea", "along", "rotational", "center", "centre",
+    "the", "of", "on", "in", "at", "der", "des", "am", "im", "dynamic", "dyn", "total", "sum",
+    "all", "pairs", "dynamische", "dynamischer", "cm", "mea", "along", "rotational", "center",
+    "centre",
 }  # fmt: skip
 _RATES = {
     **dict.fromkeys(("dot", "rate", "velocity", "vel", "speed", "geschwindigkeit", "v"), 1),
@@ -161,6 +168,8 @@ def _of_mesh(compact: str) -> Meaning | None:
 
 def _of_gear(words: list[str]) -> Meaning | None:
     """Return a quantity of a gear, or a rate of a quantity."""
+    if "rad" in words and _GERMAN & set(words):
+        words = ["g" if word == "rad" else word for word in words]
     gears = {_GEAR_WORDS[word] for word in words if word in _GEAR_WORDS}
     numbered = any(word in _NUMBERS for word in words)
     if "gear" in words and not numbered:
@@ -210,7 +219,7 @@ def _base(kind: str, gear: str | None, axis: str | None) -> str:
 
 
 _ABSCISSAE: dict[str, AbscissaKind] = {
-    **dict.fromkeys(("t", "time", "zeit", "times", "xvalue", "xwert", "timestamp", "simulationtime", "tout",
+    **dict.fromkeys(("t", "time", "zeit", "xvalue", "xwert", "timestamp", "simulationtime", "tout",
                      "elapsedtime"), "time"),
     **dict.fromkeys(("meshphase", "meshcycle", "meshcycles", "phase", "tau", "ttm", "meshposition",
                      "eingriffsphase", "mesh", "numberofmeshcycles"), "mesh_phase"),
@@ -219,7 +228,7 @@ _ABSCISSAE: dict[str, AbscissaKind] = {
     **dict.fromkeys(("rotationangle", "angle", "drehwinkel", "winkel", "pinionangle", "rollangle",
                      "pinionrollangle", "ritzelwinkel"), "pinion_angle"),
     **dict.fromkeys(("gearangle", "wheelangle", "gearrotationangle", "radwinkel"), "gear_angle"),
-    **dict.fromkeys(("speed", "pinionspeed", "rpm", "n", "n1", "drehzahl", "inputspeed", "omega", "speeds",
+    **dict.fromkeys(("speed", "pinionspeed", "rpm", "n", "n1", "drehzahl", "inputspeed", "omega",
                      "rotationalspeed", "rotorspeed", "ritzeldrehzahl", "pinionrotationalspeed",
                      "np"), "speed"),
     **dict.fromkeys(("gearspeed", "outputspeed", "n2", "wheelspeed", "raddrehzahl", "ng"), "gear_speed"),

@@ -31,8 +31,8 @@ class OtherModel:
     file, numbers in the units of the file (``parameters["pinion"]["teeth"]``,
     ``parameters["operating"]["pinion_torque"]`` in N m). Three more sections are in SI: "geometry" with the
     fields of ``lumped.Geometry``, "bodies" with masses and inertias, and "si" with ``pinion_speed`` [rad/s],
-    ``pinion_torque`` [N m], the contact of the bearings as ``stiffness`` and ``damping ratio`` excluded.
-    The function returns a mapping from names to arrays, a data frame or a dataset.
+    ``pinion_torque`` [N m], ``module`` [m] and ``pressure_angle`` [rad]. The function returns a
+    mapping from names to arrays, a data frame or a dataset.
 
     Attributes
     ----------
@@ -81,8 +81,8 @@ def parameters_of(pair: GearPair) -> dict[str, Any]:
     """Return the parameters of a pair as a nested mapping; see ``OtherModel``."""
     return {
         **pair.to_mapping(),
-        "geometry": asdict(pair.geometry),
-        "bodies": asdict(bodies_of(pair)),
+        "geometry": _bare(asdict(pair.geometry)),
+        "bodies": _bare(asdict(bodies_of(pair))),
         "si": {
             "pinion_speed": float(pair.operating.pinion_speed),
             "pinion_torque": float(pair.operating.pinion_torque),
@@ -90,6 +90,11 @@ def parameters_of(pair: GearPair) -> dict[str, Any]:
             "pressure_angle": float(pair.basic_rack.pressure_angle),
         },
     }
+
+
+def _bare(fields: dict[str, Any]) -> dict[str, Any]:
+    """Numbers without the unit that a number of a pair carries."""
+    return {name: float(value) if isinstance(value, float) else value for name, value in fields.items()}
 
 
 def other_model(theirs: Any) -> OtherModel | None:

@@ -6,7 +6,7 @@ cycles s. A complex amplitude is U_m = a_m exp(i p_m). Amplitudes are peak value
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from validation.check.quantities import QUANTITIES
 from validation.check.reading.channels import no_channel, note_not_used
 from validation.check.reading.facts import Facts, scaled
 from validation.check.reading.headings import readings
-from validation.check.reading.meaning import Part, part_of_order, understood
+from validation.check.reading.meaning import Meaning, Part, Understood, part_of_order, understood
 from validation.check.reading.over_speed import over_speed
 from validation.check.reading.table import Column
 from validation.check.reading.units import si_factor
@@ -65,10 +65,12 @@ def curves_of_orders(
     columns: list[Column], orders: FloatArray, facts: Facts, pair: GearPair
 ) -> Curves | ValuesOverSpeed:
     """Return curves over a mesh cycle, or amplitudes at the speed of the pair where phases are missing."""
-    uses = []
+    uses: list[OrderColumn] = []
     not_used = []
+    quantities = {known.meaning for c in columns if (known := _known(c)) is not None}
+    alone = next(iter(quantities)) if len(quantities) == 1 else None
     for column in columns:
-        if use := _used(column, facts, orders.size):
+        if use := _used(column, facts, orders.size, alone):
             uses.append(use)
         else:
             not_used.append(column.heading)
@@ -100,18 +102,27 @@ def curves_of_parts(
     return over_speed(np.array([speed]), values, facts)
 
 
-def _used(column: Column, facts: Facts, count: int) -> OrderColumn | None:
-    """Return a column with its part of a complex amplitude; None where its heading names no quantity."""
+def _known(column: Column) -> Understood | None:
+    """Quantity that the heading of a column names beside the part of a complex amplitude."""
+    found = (understood(part_of_order(reading.words).words) for reading in readings(column.heading))
+    return next((one for one in found if one is not None), None)
+
+
+def _used(column: Column, facts: Facts, count: int, alone: Meaning | None) -> OrderColumn | None:
+    """Return a column with its part of a complex amplitude; None where its heading names no quantity.
+
+    A heading that names only the part, such as "phase", belongs to ``alone``, the only quantity.
+    """
     for reading in readings(column.heading):
         part = part_of_order(reading.words)
         known = understood(part.words)
-        if known is None:
+        meaning = known.meaning if known is not None else alone if not part.words else None
+        if meaning is None:
             continue
-        unit = column.unit if column.unit is not None else (reading.unit or known.heading.unit)
-        values = _in_si(column, known.meaning.quantity, part.part, unit, facts, count)
-        return OrderColumn(
-            column.heading, known.meaning.quantity, known.meaning.tooth_pair, part.part, values
-        )
+        stated = reading.unit or (known.heading.unit if known is not None else None)
+        unit = column.unit if column.unit is not None else stated
+        values = _in_si(column, meaning.quantity, part.part, unit, facts, count)
+        return OrderColumn(column.heading, meaning.quantity, meaning.tooth_pair, part.part, values)
     return None
 
 
@@ -172,6 +183,7 @@ def _spectrum(parts: dict[str, OrderColumn]) -> _Spectrum:
     first = next(iter(parts.values()))
     values = {part: use.values for part, use in parts.items()}
     has_phase = True
+    amplitudes: Any
     if set(values) == {"real", "imag"}:
         amplitudes = values["real"] + 1j * values["imag"]
     elif set(values) == {"amplitude", "phase"}:

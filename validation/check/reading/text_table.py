@@ -37,6 +37,8 @@ _SAMPLE = 200
 _COMMENTS = ("#", "%", "!", "//")
 _POINT = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?")
 _COMMA = re.compile(r"[+-]?(\d+,?\d*|,\d+)([eE][+-]?\d+)?")
+#: Stands between a name and its unit while a line is split at blanks.
+_JOINT = "\ue000"
 _BLANKS = re.compile(r"\s+")
 
 Decimal = Literal[".", ","]
@@ -120,7 +122,8 @@ def table_of_text(
         notes.append("Numbers are read with a decimal comma.")
     preamble = [line for line in lines[: headings.first] if line.strip() and not _is_comment(line)]
     if preamble:
-        notes.append(f"{len(preamble)} lines before the headings are not used.")
+        lines_are = "lines before the headings are" if len(preamble) > 1 else "line before the headings is"
+        notes.append(f"{len(preamble)} {lines_are} not used.")
     return Table(name, columns, remarks=tuple(notes))
 
 
@@ -132,9 +135,9 @@ def _split(line: str, delimiter: str) -> list[str]:
     """Cells of a line without surrounding blanks and quotes."""
     if delimiter == " ":
         single = _BLANKS.sub(" ", line.strip())
-        joined = re.sub(r" (?=[\[({])", "\x1f", single)  # a unit belongs to the name before it
+        joined = re.sub(r" (?=[\[({])", _JOINT, single)  # a unit belongs to the name before it
         quoted = re.findall(r'"[^"]*"|\S+', joined)
-        return [cell.strip('"').replace("\x1f", " ") for cell in quoted]
+        return [cell.strip('"').replace(_JOINT, " ") for cell in quoted]
     if '"' in line or "'" in line:
         quote = '"' if '"' in line else "'"
         try:
@@ -240,7 +243,7 @@ def _headings(lines: list[str], layout: Layout, block: _Block, field: str) -> _H
     ]
     if above and len(above) > 1 and _units_row(above[0][1]) and not _units_row(above[1][1]):
         return _Headings(above[1][1], [_bare(cell) for cell in above[0][1]], above[1][0])
-    if above and not _units_row(above[0][1]):
+    if len(above) == 1 or (above and not _units_row(above[0][1])):
         return _Headings(above[0][1], None, above[0][0])
     for index in range(block.first - 1, max(block.first - 50, -1), -1):
         if _is_comment(lines[index]):
@@ -248,8 +251,9 @@ def _headings(lines: list[str], layout: Layout, block: _Block, field: str) -> _H
             cells = _trimmed(_split(text, delimiter), block.cells) or _trimmed(_split(text, " "), block.cells)
             if cells and any(understood(cell) for cell in cells):
                 return _Headings(cells, None, index)
-    if block.first and any(line.strip() for line in lines[: block.first]):
-        count = len(_split(lines[block.first - 1], delimiter))
+    others = [line for line in lines[: block.first] if line.strip() and not _is_comment(line)]
+    if others:
+        count = len(_split(others[-1], delimiter))
         raise refuse(
             field, f"{block.cells} columns of numbers, {count} headings", "one heading for each column",
             "Give one heading for each column; put headings with commas in quotes.",

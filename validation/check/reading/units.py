@@ -25,11 +25,14 @@ _USUAL = {
 #: Words that exporters write for a unit -> the unit.
 _WORDS = {
     "mikrometer": "um", "mum": "um", "µ": "um", "μ": "um", "my": "um", "sek": "s", "secs": "s",
+    "mil": "thou", "mils": "thou",
     "sekunden": "s", "sekunde": "s", "grad": "deg", "degrees": "deg", "umdrehungen": "turn",
     "revs": "turn", "rev": "turn", "newtonmeter": "N*m",
 }  # fmt: skip
 #: Gravity of Earth, the unit of accelerometers [m/s^2], by definition (CGPM 1901).
 _STANDARD_GRAVITY = 9.80665
+#: A number is no unit; 1/min is.
+_NUMBER = re.compile(r"\s*[+-]?[\d.]+(?!\s*/)")
 _DIMENSIONLESS = ("", "-", "–", "1", "none", "ohne")
 
 
@@ -46,7 +49,7 @@ def _converted(unit: str, si: str) -> float | None:
         return 1.0
     if si == "m/s^2" and unit.strip() in ("g", "G", "g0", "gn"):
         return _STANDARD_GRAVITY
-    if len(unit) > 40 or unit.strip() in _DIMENSIONLESS:
+    if len(unit) > 40 or unit.strip() in _DIMENSIONLESS or _NUMBER.match(unit):
         return None
     try:
         return to_si(f"1 {_plain(unit)}", _STATED[si])
@@ -64,6 +67,11 @@ def si_factor(unit: str, si: str, field: str) -> float:
     usual = _USUAL[si]
     advice = nearest(unit, usual) or f"Write the unit in brackets after the name, such as [{usual[-1]}]."
     raise refuse(f"{field}: unit", shown(unit), f"a unit of {si}, such as {', '.join(usual)}", advice)
+
+
+def converts(unit: str, si: str) -> bool:
+    """Return whether a unit converts to an SI unit."""
+    return _converted(unit, si) is not None
 
 
 @lru_cache(maxsize=4096)

@@ -1,4 +1,4 @@
-"""A measured record beside the prediction: every channel, percent of the measured value, orders and phase."""
+"""A measured record beside the prediction: every channel in per cent, orders and phase, explanations."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from validation.plots.record import record_figure
 from validation.plots.style import scaled
 from validation.reporting.blocks import Badge, Block, Column, Content, Picture, Table, Text, table_of
 from validation.reporting.chapter import Chapter
+from validation.reporting.check_content import ladder_content
 from validation.reporting.results import Results
 
 _BADGES = {
@@ -35,6 +36,9 @@ def write(results: Results) -> Content | None:
     picture = "Both motions about their means, and their mesh orders; bars: 2 standard uncertainties."
     blocks.append(Picture("record", picture, comparison.figure_data, record_figure))
     blocks += [_uncertainties_table(comparison), Text(_scope(comparison))]
+    if (explained := results.record_explanations) is not None:
+        content = ladder_content(explained.problem, explained.ladder, explained.limit)
+        blocks += [Text(f"What would explain it: {content.result}"), *content.blocks]
     return Content(f"{comparison.verdict.text} {comparison.words}", tuple(blocks))
 
 

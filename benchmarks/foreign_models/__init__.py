@@ -1,0 +1,1 @@
+"""Models of spur gear pairs by engineers who did not write spurcheck, and the mistakes that they make."""
