@@ -52,15 +52,15 @@ def contacts(t):
 
 def load(u):
     """Transmission error, and the load of every pair in contact: spring and damper."""
-    th1, th2, x1, y1, x2, y2, dth1, dth2, dx1, dy1, dx2, dy2 = u
+    th1, th2, x1, _, x2, _, dth1, dth2, dx1, _, dx2, _ = u
     delta = RB1 * th1 - RB2 * th2 + x1 - x2
     return delta, K_PAIR * delta + C_PAIR * (RB1 * dth1 - RB2 * dth2 + dx1 - dx2)
 
 
 def rates(u, xis, mu):
     """Newton and Euler for both gears."""
-    th1, th2, x1, y1, x2, y2, dth1, dth2, dx1, dy1, dx2, dy2 = u
-    delta, n = load(u)
+    _, _, x1, y1, x2, y2, dth1, dth2, dx1, dy1, dx2, dy2 = u
+    _, n = load(u)
     forces = [mu * n if xi > P else -mu * n for xi in xis]
     total, friction = n * len(xis), sum(forces)
     moment1 = sum(f * xi for f, xi in zip(forces, xis, strict=True))

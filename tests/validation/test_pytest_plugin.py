@@ -1,4 +1,4 @@
-"""Does the plugin pass right curves, fail wrong ones with the verdict, and load nothing before it is asked?"""
+"""Does the plugin pass right curves, fail wrong ones with the verdict, and load nothing unasked?"""
 
 import os
 import subprocess

@@ -120,7 +120,7 @@ def _show(result: Check) -> None:
     if result.over_speed is not None:
         from validation.reporting.check_content import speed_rows
 
-        rows = [
+        columns = [
             (
                 row.name,
                 percent(row.misfit),
@@ -131,7 +131,7 @@ def _show(result: Check) -> None:
             )
             for row in speed_rows(result.over_speed)
         ]
-        show("", "column | >misfit | >worst speed | >theirs there | >spurcheck there | ", rows)
+        show("", "column | >misfit | >worst speed | >theirs there | >spurcheck there | ", columns)
     if result.static.rows:
         rows = [
             (
