@@ -14,8 +14,8 @@ from validation.check.reference import lumped_motion
 #: Mesh cycles of all curves, and samples in a cycle.
 CYCLES, PER_CYCLE = 5, 400
 #: A mesh of ROSS, by the attributes of ``ross.Mesh`` and ``GearElementTVMS`` of ROSS 2.3: 30/60 teeth,
-#: module 2 mm. Masses m = rho pi (r^2 - r_i^2) b, moments of inertia m (r^2 + r_i^2)/2, the contact ratio by both tip
-#: circles. The stiffness is that of spurcheck by the method of ROSS.
+#: module 2 mm. Masses m = rho pi (r^2 - r_i^2) b, moments of inertia m (r^2 + r_i^2)/2, the contact ratio by
+#: both tip circles. The stiffness is that of spurcheck by the method of ROSS.
 ROTOR = """
 from types import SimpleNamespace
 

@@ -74,7 +74,6 @@ NO_FIGURE = {
     "lumped.shaft_modes", "lumped.stiffness_components", "lumped.tooth_gaps",
     "multibody.attribution", "floquet.stability_boundaries", "floquet.stability_margins",
     "validation.check.check",
-    "validation.exchange.compare_matrices",
     "validation.studies.run_sweep", "validation.uncertainty", "validation.write_interactive_page",
 }  # fmt: skip
 

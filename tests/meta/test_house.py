@@ -12,7 +12,7 @@ PACKAGES = ("lumped", "multibody", "floquet", "validation")
 LOOSE = {
     "lumped": {"arguments", "cache", "compiler", "errors", "gauss_legendre", "kernel_stamps", "labelling",
      "linked_code", "outcomes", "path_function", "ranges", "typing"},
-    "validation": {"stop_signals", "cli"},
+    "validation": {"stop_signals", "cli", "pytest_plugin"},
 }  # fmt: skip
 #: Folders of tests that belong to no single package.
 QUESTIONS = {"meta", "packaging", "docs", "examples", "hardening", "evidence", "reproductions",

@@ -23,9 +23,9 @@ from lumped.outcomes import Absent, Outcome
 from lumped.typing import Progress
 from validation.check.curves import Curves
 from validation.check.reading.reader import read
+from validation.check.record.all_channels import RecordComparison
 from validation.check.record.channel_comparison import Record
 from validation.check.record.comparing import check_record
-from validation.check.record.record_comparison import RecordComparison
 from validation.files.folder import FORMAT, FORMAT_VERSION, whole_folder
 from validation.files.output import write_dataset
 from validation.reporting.blocks import Picture, Table, chapter_data, plain

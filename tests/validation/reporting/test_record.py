@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 import xarray as xr
 
-from tests.validation.records.dynamic_records import dynamic_record
+from tests.validation.check.record.dynamic_records import dynamic_record
 from validation.check.record.channel_comparison import Record
 from validation.exchange.new_pair_file import new_pair
 from validation.prediction.motion import predicted

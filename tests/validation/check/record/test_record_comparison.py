@@ -9,7 +9,7 @@ import pytest
 import lumped
 from lumped.errors import ParameterError
 from tests.unlike_pairs import unlike_pair
-from tests.validation.records.dynamic_records import dynamic_record, motion
+from tests.validation.check.record.dynamic_records import dynamic_record, motion
 from validation.check.record.channel_comparison import (
     NOT_VARIED,
     SHARE,
