@@ -20,7 +20,7 @@ BOOKKEEPING = re.compile(
     r"|validation\.(files|exchange|studies|plots|reporting|commands|interactive|check\.reading)\b.*"
     r"|validation\.verification\.(checks|evidence)"
 )
-SOURCE = re.compile(r"\beqs?\. |\bISO\b|\b(18|19|20)\d\d\b|docs/theory/\w+\.md")
+SOURCE = re.compile(r"\beqs?\. |\bISO\b|\b(18|19|20)\d\d\b|docs/theory/\w+\.md|docs/how_to/check_your_model\.md")
 UNIT = re.compile(
     r"\[[^\]]*\]|\bSI\b|\bunits?\b|dimensionless|relative|ratio|share|coefficient|number|in mesh cycles"
 )

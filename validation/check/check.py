@@ -79,7 +79,7 @@ class Check:
     pair : gear pair of the reference, at the speed and torque of the curves
     name : name of the other model or record
     role : "model" or "measurement"
-    limit : misfit up to which the curves agree
+    limit : misfit up to which the curves agree, a share
     static : static quantities that the other model states or shows
     low_speed : motion of a model that can be called, at a speed at which the motion is nearly static
     problem : the curves and our motion of the pair; None: no curves at one speed
