@@ -18,7 +18,7 @@ from scipy import ndimage
 
 from floquet import stability_chart
 from floquet.engine.multipliers import radii_with_bounds, verdicts
-from floquet.engine.refinement import gaps, refine
+from floquet.engine.refinement import NodeValues, gaps, refine
 from floquet.gear.axes import speed_range
 from lumped import load_gear_pair, preset_names
 from lumped.errors import ParameterError, SpurcheckError
@@ -194,7 +194,7 @@ def closed_forms(n: int) -> None:
         i, j = np.unravel_index(flat, (n, n))
         values, errors = mathieu_many(a[i], q[j])
         radius, error = radii_with_bounds(values, errors)
-        return radius, verdicts(radius, error).astype(np.intp), gaps(values)
+        return NodeValues(radius, verdicts(radius, error), gaps(values))
 
     got, seconds = cpu(lambda: refine((n, n), np.ones(n), ask, rows=(0, n // 2, -1)))
     wrong = thin = 0
@@ -223,7 +223,7 @@ def closed_forms(n: int) -> None:
         radius = np.where(half > 1.0, half + np.sqrt(np.maximum(half**2 - 1.0, 0.0)), 1.0)
         angle = np.arccos(np.clip(0.5 * trace(delta[i], epsilon[j]), -1.0, 1.0))
         values = np.exp(1j * np.stack([angle, -angle], axis=1)) * np.stack([radius, 1.0 / radius], axis=1)
-        return radius, verdicts(radius, np.full(radius.size, 1e-9)).astype(np.intp), gaps(values)
+        return NodeValues(radius, verdicts(radius, np.full(radius.size, 1e-9)), gaps(values))
 
     assert abs(trace(3.0, 0.2) - meissner_trace(3.0, 0.2)) < 1e-12
     got, seconds = cpu(lambda: refine((n, n), np.ones(n), meissner, rows=(0, n // 2, -1)))

@@ -6,7 +6,7 @@ Sources: Abbas Al-Zubaidi 2008, eqs. 1 to 9, repaired and derived in docs/theory
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal, Self, get_args
 
@@ -166,6 +166,15 @@ class LTVSystem:
             gyroscopic=z.gyroscopic,
             supports=support,
         )
+
+    def at_speed(self, pair: GearPair, cycle: MeshCycle) -> LTVSystem:
+        """Return the system of a pair that differs in speed alone, with its mesh cycle.
+
+        On springs only the mesh cycle changes; shafts have gyroscopic moments.
+        """
+        if self.supports.name == "springs":
+            return replace(self, pair=pair, cycle=cycle)
+        return LTVSystem.of(pair, self.form, cycle=cycle, supports="shafts")
 
     @property
     def pinion_torque(self) -> float:

@@ -17,10 +17,10 @@ PACKAGES = ("lumped", "multibody", "floquet", "validation")
 BOOKKEEPING = re.compile(
     r"lumped\.(errors|schema\.(assumed|pair|files))"
     r"|floquet\.engine\.chart"
-    r"|validation\.(files|exchange|studies|plots|reporting|commands|interactive|check\.reading)\b.*"
+    r"|validation\.(files|exchange|studies|plots|reporting|commands|interactive|check|reference_cases)\b.*"
     r"|validation\.verification\.(checks|evidence)"
 )
-SOURCE = re.compile(r"\beqs?\. |\bISO\b|\b(18|19|20)\d\d\b|docs/theory/\w+\.md|docs/how_to/check_your_model\.md")
+SOURCE = re.compile(r"\beqs?\. |\bISO\b|\b(18|19|20)\d\d\b|docs/theory/\w+\.md")
 UNIT = re.compile(
     r"\[[^\]]*\]|\bSI\b|\bunits?\b|dimensionless|relative|ratio|share|coefficient|number|in mesh cycles"
 )

@@ -33,7 +33,15 @@ from validation.check.reading.other_model import OtherModel, other_model
 from validation.check.reading.reader import read
 from validation.check.reference import lumped_motion, multibody_motion
 from validation.check.static import StaticRung, static_rung
-from validation.check.words import percent, static_words, subject
+from validation.check.words import (
+    ladder_words,
+    low_speed_failure,
+    motion_failure,
+    percent,
+    speed_failure,
+    static_failure,
+    subject,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -47,8 +55,6 @@ _SETTLED = 0.01
 _RESOLVED = 0.01
 #: Mesh frequency of the rung at low speed over the lowest natural frequency: the motion is nearly static.
 _LOW = 1.0 / 12.0
-#: Most static quantities, and most channels, in a sentence.
-_MOST = 3
 #: Unit attribute of a variable whose channels differ in their unit.
 _BY_CHANNEL = "SI, by channel"
 
@@ -79,7 +85,7 @@ class Check:
     pair : gear pair of the reference, at the speed and torque of the curves
     name : name of the other model or record
     role : "model" or "measurement"
-    limit : misfit up to which the curves agree, a share
+    limit : misfit up to which the curves agree, a share of the motion
     static : static quantities that the other model states or shows
     low_speed : motion of a model that can be called, at a speed at which the motion is nearly static
     problem : the curves and our motion of the pair; None: no curves at one speed
@@ -171,7 +177,18 @@ class Check:
                 f"Not comparable: {who[0].lower()}{who[1:]} differs by {percent(self.misfit)}, but both "
                 f"programs of spurcheck differ by {percent(self.discrepancy)} here."
             )
-        return f"{who} {verb}{size}." + _differs_words(self)
+        sentences = [f"{who} {verb}{size}."]
+        if self.failed is Rung.STATIC:
+            sentences.append(static_failure(self.static))
+        elif self.failed is Rung.LOW_SPEED and self.low_speed is not None:
+            sentences.append(low_speed_failure(self.low_speed))
+        elif self.failed is Rung.MOTION and self.problem is not None:
+            sentences.append(motion_failure(self.nearer, self.limit))
+        elif self.failed is Rung.OVER_SPEED and self.over_speed is not None:
+            sentences.append(speed_failure(self.over_speed))
+        if self.ladder is not None and (self.ladder.steps or self.failed is Rung.MOTION):
+            sentences.append(ladder_words(self.ladder))
+        return " ".join(sentences)
 
     @cached_property
     def channels(self) -> xr.Dataset:
@@ -409,46 +426,3 @@ def _remarks(problem: Problem) -> tuple[str, ...]:
     if unseen:
         remarks.append(f"Not compared, no whole engagement in the samples: {', '.join(unseen)}.")
     return tuple(remarks)
-
-
-def _differs_words(check: Check) -> str:
-    """Return the sentences on what differs and what the curves are compatible with, with a blank before.
-
-    Empty: nothing differs.
-    """
-    if check.failed is None:
-        return ""
-    parts = []
-    if check.failed is Rung.STATIC:
-        parts.append(
-            f"Before anything moves: {'; '.join(static_words(row) for row in check.static.wrong[:_MOST])}."
-        )
-    if check.failed is Rung.LOW_SPEED and check.low_speed is not None:
-        size = percent(check.low_speed.misfit.value)
-        rpm = check.low_speed.pair.operating.pinion_speed * 9.549296585513721
-        parts.append(
-            f"Already at {rpm:.0f} rpm the transmission error differs by {size}: look at the statics first."
-        )
-    if check.failed is Rung.MOTION:
-        parts.append(f"{_channel_words(check)}.")
-    if check.failed is Rung.OVER_SPEED and check.over_speed is not None:
-        rpm = check.over_speed.worst_speed * 9.549296585513721
-        parts.append(f"The largest difference is at {rpm:.0f} rpm.")
-    if check.explanations:
-        first = check.explanations[0]
-        parts.append(f"{first.sentence}: the misfit is then {percent(first.misfit)}.")
-        parts += [
-            f"Then {step.sentence[0].lower()}{step.sentence[1:]}: {percent(step.misfit)}."
-            for step in check.explanations[1:]
-        ]
-    elif check.ladder is not None and check.failed is Rung.MOTION:
-        parts.append("No named explanation makes the difference much smaller.")
-    return "".join(f" {part}" for part in parts)
-
-
-def _channel_words(check: Check) -> str:
-    """Return the channels that differ most, with their misfits."""
-    rows = sorted(check.nearer.channels, key=lambda row: -row.total)
-    wrong = [row for row in rows if row.total > check.limit][:_MOST] or rows[:1]
-    names = ", ".join(f"{row.channel.channel.name} {percent(row.total)}" for row in wrong)
-    return f"Most in {names}"

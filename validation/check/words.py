@@ -2,20 +2,71 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from lumped.fields.units import to_stated
 from validation.check.curves import Role
+from validation.check.ladder import Ladder
+from validation.check.misfit import Misfit
+from validation.check.over_speed import SpeedMisfit
+from validation.check.problem import Problem
+from validation.check.static import StaticRow, StaticRung
 from validation.files.formatting import percent, quantity
 
-if TYPE_CHECKING:
-    from validation.check.static import StaticRow
+__all__ = [
+    "ladder_words",
+    "low_speed_failure",
+    "motion_failure",
+    "percent",
+    "speed_failure",
+    "static_failure",
+    "static_words",
+    "subject",
+]
 
-__all__ = ["percent", "static_words", "subject"]
+#: Most static quantities, and most channels, in a sentence.
+_MOST = 3
 
 
 def subject(role: Role) -> str:
     """Return the grammatical subject of the sentences."""
     return "Your model" if role == "model" else "The record"
+
+
+def static_failure(rung: StaticRung) -> str:
+    """Return the sentence on static quantities that differ."""
+    return f"Before anything moves: {'; '.join(static_words(row) for row in rung.wrong[:_MOST])}."
+
+
+def low_speed_failure(problem: Problem) -> str:
+    """Return the sentence on a transmission error that differs where the motion is nearly static."""
+    rpm = to_stated(problem.pair.operating.pinion_speed, "rpm")
+    size = percent(problem.misfit.value)
+    return f"Already at {rpm:.0f} rpm the transmission error differs by {size}: look at the statics first."
+
+
+def motion_failure(misfit: Misfit, limit: float) -> str:
+    """Return the sentence on the channels that differ most, with their misfits."""
+    rows = sorted(misfit.channels, key=lambda row: -row.total)
+    wrong = [row for row in rows if row.total > limit][:_MOST] or rows[:1]
+    names = ", ".join(f"{row.channel.channel.name} {percent(row.total)}" for row in wrong)
+    return f"Most in {names}."
+
+
+def speed_failure(misfit: SpeedMisfit) -> str:
+    """Return the sentence on the speed at which values over speed differ most."""
+    return f"The largest difference is at {to_stated(misfit.worst_speed, 'rpm'):.0f} rpm."
+
+
+def ladder_words(ladder: Ladder) -> str:
+    """Return the sentences on the steps of the ladder."""
+    if not ladder.steps:
+        return "No named explanation makes the difference much smaller."
+    first = ladder.steps[0]
+    sentences = [f"{first.sentence}: the misfit is then {percent(first.misfit)}."]
+    sentences += [
+        f"Then {step.sentence[0].lower()}{step.sentence[1:]}: {percent(step.misfit)}."
+        for step in ladder.steps[1:]
+    ]
+    return " ".join(sentences)
 
 
 def static_words(row: StaticRow) -> str:

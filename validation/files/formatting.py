@@ -158,8 +158,8 @@ def _joined(value: Any) -> Any:
 
 
 def percent(share: float) -> str:
-    """Return a share in per cent with two digits: "3.1 %". Below 0.01 % it is "0 %"."""
+    """Return a share in per cent with two digits: "3.1 %"; "< 0.01 %" for a smaller one."""
     size = 100.0 * share
-    if size < 0.01:
-        return "0 %"
+    if 0.0 < size < 0.01:
+        return "< 0.01 %"
     return f"{size:.0f} %" if size >= 9.95 else f"{size:.2g} %"

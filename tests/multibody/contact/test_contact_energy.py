@@ -12,7 +12,7 @@ from lumped.quasi_static.loaded import StaticMesh
 from lumped.quasi_static.tooth_error import corner_gap as lumped_corner_gap
 from multibody.contact import kinematics as kn
 from multibody.contact.elements import GRADUAL, ContactLaw, elastic_load, shared_loads, stored_energy
-from multibody.contact.kernels import contact_forces
+from multibody.contact.kernels import tooth_forces
 from multibody.contact.machine import machine
 from multibody.contact.records import CONTACTS_SIZE, PAIR, opened_contacts
 from multibody.run.effects import effect_flags
@@ -54,7 +54,7 @@ WITH_CORNERS = dict.fromkeys(PAIRS, 11) | {"relief": 0, "unlike teeth": 1}
 def contact(numbers, t, q, v=None, flags=ALL):
     contacts = np.zeros(CONTACTS_SIZE)
     state = np.array([q, np.zeros(6) if v is None else v, np.zeros(6)])
-    count = contact_forces(t, state, numbers.packed, flags, contacts)
+    count = tooth_forces(t, state, numbers.packed, flags, contacts)
     return state[2], opened_contacts(contacts)[:count]
 
 

@@ -9,7 +9,7 @@ from lumped.model.steady import periodic_solution
 from lumped.path_of_contact.friction import contact_path
 from multibody.contact import kinematics as kn
 from multibody.contact.friction import SurfaceMotion, nominal_friction, signed_friction
-from multibody.contact.kernels import contact_forces
+from multibody.contact.kernels import tooth_forces
 from multibody.contact.machine import machine
 from multibody.contact.records import CONTACTS_SIZE, opened_contacts
 from multibody.run.effects import effect_flags
@@ -30,7 +30,7 @@ LIKE_TEETH = [name for name in UNLIKE if unlike_pair(name).healthy is unlike_pai
 def forces(numbers, t, q, v, flags=ALL):
     state = np.array([q, v, np.zeros(6)])
     contacts = np.zeros(CONTACTS_SIZE)
-    count = contact_forces(t, state, numbers.packed, flags, contacts)
+    count = tooth_forces(t, state, numbers.packed, flags, contacts)
     assert count >= 0
     return state[2], opened_contacts(contacts)[:count]
 
@@ -222,7 +222,7 @@ def test_the_contact_of_a_faster_machine_rolls_and_slides_as_at_that_speed():
     contacts = np.zeros(CONTACTS_SIZE)
     state[0, 5] = -6e-5 / p.geometry.radius_g  # presses the flanks
     state[1, [2, 5]] = -0.5 * p.rolling.omega_p, 0.5 * p.rolling.omega_g
-    count = contact_forces(0.3 * numbers.period, state, numbers.packed, flags, contacts)
+    count = tooth_forces(0.3 * numbers.period, state, numbers.packed, flags, contacts)
     records = opened_contacts(contacts)[:count]
     expected = lumped.mesh_elements(faster).friction(records["position"])
     nominal = lumped.mesh_elements(pair).friction(records["position"])

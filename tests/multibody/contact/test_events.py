@@ -14,7 +14,7 @@ from multibody.contact.events import (
     event_table,
     time_to_event,
 )
-from multibody.contact.kernels import contact_forces
+from multibody.contact.kernels import tooth_forces
 from multibody.contact.machine import machine
 from multibody.contact.records import CONTACTS_SIZE, opened_contacts
 from multibody.run.effects import effect_flags
@@ -42,7 +42,7 @@ def contacts(numbers, flags, t, q, v):
     """What jumps with the force: the number of pairs and the sign of each friction coefficient."""
     state = np.array([q, v, np.zeros(6)])
     records = np.zeros(CONTACTS_SIZE)
-    count = contact_forces(t, state, numbers.packed, flags, records)
+    count = tooth_forces(t, state, numbers.packed, flags, records)
     return count, tuple(np.sign(opened_contacts(records)["friction_coefficient"][:count]))
 
 
@@ -106,7 +106,7 @@ def test_corners_touch_and_let_go_where_it_was_foreseen(name, pairs):
         for tau in (wait - 1e-5 * period, wait + 1e-5 * period):
             records = np.zeros(CONTACTS_SIZE)
             state = np.array([q + tau * v, v, np.zeros(6)])
-            count = contact_forces(tau, state, numbers.packed, flags, records)
+            count = tooth_forces(tau, state, numbers.packed, flags, records)
             touching = opened_contacts(records)[:count]
             yield count, touching["load"].min(), touching["elastic_load"].min()
 

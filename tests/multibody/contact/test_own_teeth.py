@@ -8,7 +8,7 @@ import lumped
 import multibody
 from lumped.model.periodic_system import LTVSystem
 from lumped.model.tooth_laws import ToothLaws
-from multibody.contact.kernels import contact_forces
+from multibody.contact.kernels import tooth_forces
 from multibody.contact.machine import machine
 from multibody.contact.records import CONTACTS_SIZE, opened_contacts, opened_records
 from multibody.contact.tooth_pairs import OwnTeeth, TurnedArcs, teeth_of_pair, tooth_pair
@@ -125,7 +125,7 @@ def test_a_displaced_tooth_that_carries_alone_makes_the_gear_lag_or_lead(gear, l
             state[0, 2] = -delta / radius
             # Tooth 3 comes to A after two mesh cycles; from 0.7 to 0.95 of a cycle one pair carries alone.
             t = (cycle + 0.8) * numbers.period
-            count = contact_forces(t, state, numbers.packed, flags, contacts)
+            count = tooth_forces(t, state, numbers.packed, flags, contacts)
             assert np.count_nonzero(opened_contacts(contacts)["load"][:count]) <= 1
             return opened_contacts(contacts)["load"][:count].sum() - 5e3
 

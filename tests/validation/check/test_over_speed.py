@@ -11,6 +11,7 @@ from tests.validation.check.written_check import FACTORS, SPEEDS, checked, pair,
 from validation.check import over_speed
 from validation.check.check import Rung, Verdict, check
 from validation.check.curves import SpeedColumn, ValuesOverSpeed
+from validation.check.words import percent
 
 #: Torque [N m] of the values, which is not that of the file.
 TORQUE = 160.0
@@ -45,7 +46,7 @@ def test_the_right_values_agree_in_every_statistic_and_unit(table):
     statistics = [column.statistic for column in result.over_speed.theirs.columns]
     assert statistics == ["peak_to_peak", "order", "mean", "rms"]
     assert result.over_speed.theirs.pinion_torque == TORQUE
-    assert str(result) == "Your model agrees: misfit 0 %, limit 5 %."
+    assert str(result) == f"Your model agrees: misfit {percent(result.misfit)}, limit 5 %."
 
 
 @pytest.mark.parametrize("column", [

@@ -8,8 +8,8 @@ import pandas as pd
 import pytest
 import xarray as xr
 
-from tests.validation.check.record.dynamic_records import dynamic_record
-from validation.check.record.channel_comparison import Record
+from tests.validation.check.record.dynamic_motions import dynamic_record
+from validation.check.record.channel import Record
 from validation.exchange.new_pair_file import new_pair
 from validation.prediction.motion import predicted
 from validation.prediction.uncertainty import sampled_predictions, uncertainty

@@ -9,8 +9,8 @@ import pytest
 import lumped
 from lumped.errors import ParameterError
 from tests.unlike_pairs import unlike_pair
-from tests.validation.check.record.dynamic_records import dynamic_record, motion
-from validation.check.record.channel_comparison import (
+from tests.validation.check.record.dynamic_motions import dynamic_record, motion
+from validation.check.record.channel import (
     NOT_VARIED,
     SHARE,
     UNKNOWN,
@@ -18,7 +18,7 @@ from validation.check.record.channel_comparison import (
     PeakToPeak,
     Record,
 )
-from validation.check.record.comparing import compare_record
+from validation.check.record.compare import compare_record
 from validation.exchange.new_pair_file import new_pair
 from validation.prediction.motion import predicted
 from validation.prediction.uncertainty import Varied
