@@ -117,9 +117,22 @@ class Check:
         """
         if self.over_speed is not None:
             return self.over_speed.value
+        return math.nan if self.problem is None else self.nearer.value
+
+    @property
+    def nearer(self) -> Misfit:
+        """Misfit of the channels against the nearer of both programs.
+
+        Raises
+        ------
+        ParameterError : no curves at one speed
+        """
         if self.problem is None:
-            return math.nan
-        return min(self.problem.misfit.value, math.inf if self.second is None else self.second.value)
+            raise refuse(
+                "nearer", "no curves at one speed", "a check of curves", "Read .static or .over_speed."
+            )
+        first = self.problem.misfit
+        return first if self.second is None or first.value <= self.second.value else self.second
 
     @property
     def failed(self) -> Rung | None:
@@ -170,7 +183,7 @@ class Check:
         elif self.failed is Rung.LOW_SPEED and self.low_speed is not None:
             sentences.append(low_speed_failure(self.low_speed))
         elif self.failed is Rung.MOTION and self.problem is not None:
-            sentences.append(motion_failure(self.problem, self.limit))
+            sentences.append(motion_failure(self.nearer, self.limit))
         elif self.failed is Rung.OVER_SPEED and self.over_speed is not None:
             sentences.append(speed_failure(self.over_speed))
         if self.ladder is not None and (self.ladder.steps or self.failed is Rung.MOTION):

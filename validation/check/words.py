@@ -5,10 +5,22 @@ from __future__ import annotations
 from lumped.fields.units import to_stated
 from validation.check.curves import Role
 from validation.check.ladder import Ladder
+from validation.check.misfit import Misfit
 from validation.check.over_speed import SpeedMisfit
 from validation.check.problem import Problem
 from validation.check.static import StaticRow, StaticRung
-from validation.files.formatting import quantity
+from validation.files.formatting import percent, quantity
+
+__all__ = [
+    "ladder_words",
+    "low_speed_failure",
+    "motion_failure",
+    "percent",
+    "speed_failure",
+    "static_failure",
+    "static_words",
+    "subject",
+]
 
 #: Most static quantities, and most channels, in a sentence.
 _MOST = 3
@@ -17,14 +29,6 @@ _MOST = 3
 def subject(role: Role) -> str:
     """Return the grammatical subject of the sentences."""
     return "Your model" if role == "model" else "The record"
-
-
-def percent(share: float) -> str:
-    """Return a share in per cent with two digits: "3.1 %"; "< 0.01 %" for a smaller one."""
-    size = 100.0 * share
-    if 0.0 < size < 0.01:
-        return "< 0.01 %"
-    return f"{size:.0f} %" if size >= 9.95 else f"{size:.2g} %"
 
 
 def static_failure(rung: StaticRung) -> str:
@@ -39,9 +43,9 @@ def low_speed_failure(problem: Problem) -> str:
     return f"Already at {rpm:.0f} rpm the transmission error differs by {size}: look at the statics first."
 
 
-def motion_failure(problem: Problem, limit: float) -> str:
+def motion_failure(misfit: Misfit, limit: float) -> str:
     """Return the sentence on the channels that differ most, with their misfits."""
-    rows = sorted(problem.misfit.channels, key=lambda row: -row.total)
+    rows = sorted(misfit.channels, key=lambda row: -row.total)
     wrong = [row for row in rows if row.total > limit][:_MOST] or rows[:1]
     names = ", ".join(f"{row.channel.channel.name} {percent(row.total)}" for row in wrong)
     return f"Most in {names}."
