@@ -27,7 +27,7 @@ from scipy.integrate import solve_ivp
 
 import lumped
 from multibody.contact.kernels import tooth_forces
-from multibody.contact.records import CONTACTS_SIZE, opened
+from multibody.contact.records import CONTACTS_SIZE, PHI_G, PHI_P, WRENCH, X_G, X_P, opened
 from multibody.run.integration import Segment
 from multibody.run.setup import Setup, prepare
 from multibody.run.simulation import record
@@ -57,7 +57,7 @@ def right_hand_side(setup: Setup, packed: np.ndarray) -> Callable[[float, np.nda
         v = state[6:]
         gears[:2] = q, v
         tooth_forces(t, gears, packed, setup.model.flags, contacts)
-        return np.concatenate([v, (gears[2] + load - stiffness * q - damping * v) / inertia])
+        return np.concatenate([v, (gears[WRENCH] + load - stiffness * q - damping * v) / inertia])
 
     return rates
 
