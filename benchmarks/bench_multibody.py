@@ -57,7 +57,7 @@ def right_hand_side(setup: Setup, packed: np.ndarray) -> Callable[[float, np.nda
         v = state[6:]
         gears[:2] = q, v
         tooth_forces(t, gears, packed, setup.model.flags, contacts)
-        return np.concatenate([v, (gears[2] + load - stiffness * q - damping * v) / inertia])
+        return np.concatenate([v, (gears[WRENCH] + load - stiffness * q - damping * v) / inertia])
 
     return rates
 
