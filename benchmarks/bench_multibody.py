@@ -27,7 +27,7 @@ from scipy.integrate import solve_ivp
 
 import lumped
 from multibody.contact.kernels import tooth_forces
-from multibody.contact.records import CONTACTS_SIZE, PHI_G, PHI_P, X_G, X_P, opened
+from multibody.contact.records import CONTACTS_SIZE, PHI_G, PHI_P, WRENCH, X_G, X_P, opened
 from multibody.run.integration import Segment
 from multibody.run.setup import Setup, prepare
 from multibody.run.simulation import record
