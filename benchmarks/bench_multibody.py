@@ -27,7 +27,7 @@ from scipy.integrate import solve_ivp
 
 import lumped
 from multibody.contact.kernels import tooth_forces
-from multibody.contact.records import CONTACTS_SIZE, opened
+from multibody.contact.records import CONTACTS_SIZE, PHI_G, PHI_P, X_G, X_P, opened
 from multibody.run.integration import Segment
 from multibody.run.setup import Setup, prepare
 from multibody.run.simulation import record
@@ -88,9 +88,9 @@ def dop853(setup: Setup, cycles: int) -> tuple[int, np.ndarray]:
     for number, (start, stop) in enumerate(itertools.pairwise(edges)):
         rolling.earliest = start + margin
         rolling.latest = stop - margin
-        found = solve_ivp(rates, (start, stop), state, method="DOP853", rtol=setup.rtol, atol=setup.atol)
-        state = found.y[:, -1]
-        calls = calls + found.nfev
+        solution = solve_ivp(rates, (start, stop), state, method="DOP853", rtol=setup.rtol, atol=setup.atol)
+        state = solution.y[:, -1]
+        calls = calls + solution.nfev
         if (number + 1) % m.switches.size == 0:
             ends.append(state[:6])
     return calls, np.array(ends)
@@ -142,7 +142,7 @@ class Row:
 
 def transmission_error(setup: Setup, q: np.ndarray) -> np.ndarray:
     p = setup.machine.record
-    return q[:, 0] - q[:, 3] - p.geometry.radius_p * q[:, 2] - p.geometry.radius_g * q[:, 5]
+    return q[:, X_P] - q[:, X_G] - p.geometry.radius_p * q[:, PHI_P] - p.geometry.radius_g * q[:, PHI_G]
 
 
 def measure(pair: lumped.GearPair, cycles: int, repeats: int) -> dict[str, Row]:
@@ -154,10 +154,10 @@ def measure(pair: lumped.GearPair, cycles: int, repeats: int) -> dict[str, Row]:
         setups[name] = prepare(one, fidelity=fidelity, rtol=RTOL)
         tight = prepare(one, fidelity=fidelity, rtol=TIGHT)
         reference = transmission_error(tight, multibody_run(tight, cycles)[1])
-        found = run(setups[name], cycles)[1]  # compiles, too
-        if found.size:
-            off = np.abs(transmission_error(tight, found) - reference)
-            rows[name].error = float(off.max() / np.ptp(reference))
+        motion = run(setups[name], cycles)[1]  # compiles, too
+        if motion.size:
+            error = np.abs(transmission_error(tight, motion) - reference)
+            rows[name].error = float(error.max() / np.ptp(reference))
     for _ in range(repeats):
         for name, (_, _, run) in SOLVERS.items():
             started = time.process_time()

@@ -137,11 +137,15 @@ class LTVSystem:
         as_printed: Collection[int] = (),
         cycle: MeshCycle | None = None,
         supports: Supports,
+        equations: Structure | None = None,
     ) -> Self:
-        """Return the system of a gear pair; arguments as of ``periodic_system``."""
+        """Return the system of a gear pair; arguments as of ``periodic_system``.
+
+        ``equations`` replaces the constant data of the equations of motion, on springs.
+        """
         one_of("form", form, get_args(Form))
         one_of("supports", supports, get_args(Supports))
-        s = structure(pair, as_printed)
+        s = structure(pair, as_printed) if equations is None else equations
         support = SUPPORTS[supports](pair, s)
         z = support.coordinates(form)
         m = len(z.names)

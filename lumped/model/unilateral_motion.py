@@ -97,8 +97,11 @@ class Shooting:
     @classmethod
     def of(cls, pair: GearPair, samples: int, supports: Supports) -> Self:
         """Return the search for a motion that repeats with every mesh cycle."""
-        system = LTVSystem.of(pair, "full", supports=supports)
-        laws = ToothLaws(pair)
+        return cls.of_laws(pair, LTVSystem.of(pair, "full", supports=supports), ToothLaws(pair), samples)
+
+    @classmethod
+    def of_laws(cls, pair: GearPair, system: LTVSystem, laws: ToothLaws, samples: int) -> Self:
+        """Return the search with a "full" system and laws that need not be those of the pair."""
         step = 1.0 / steps_of(system)
         fine = MomentaryRuns(pair, system, momentary_tables(laws, system, step, samples))
         outputs = samples // outputs_for_one(samples)
@@ -348,7 +351,16 @@ def unilateral_motion(
     """
     if pair.healthy is not pair:
         return settled_motion(pair, samples, supports)
-    shooting = Shooting.of(pair, samples, supports)
+    return motion_of_shooting(Shooting.of(pair, samples, supports), settles=settles)
+
+
+def motion_of_shooting(shooting: Shooting, *, settles: bool = True) -> RevolutionMotion:
+    """Periodic motion of like teeth by ``shooting`` from its linear motion, see ``unilateral_motion``.
+
+    Raises
+    ------
+    NumericalError : no such motion is found
+    """
     try:
         linear = periodic_solution(shooting.system, np.zeros(1), estimate_error=False)
     except NumericalError:  # a multiplier at +1

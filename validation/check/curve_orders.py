@@ -34,6 +34,8 @@ _DIFFERENT = 1000
 _PER_NUMBER = 4
 #: Samples of a motion in a mesh cycle for the orders of a tooth pair.
 _SAMPLES = 512
+#: An order times the period that is this close to a whole number is whole.
+_WHOLE = 1e-6
 #: Mesh cycles from which on a line and the mesh orders are told apart.
 _LINE_AND_ORDERS = 1.5
 #: Parts of a mesh cycle, and the share of the parts of an engagement that the samples of a pair must show.
@@ -174,12 +176,19 @@ def shows_contact(channel: Channel, cycles: FloatArray, motion: MotionCurves, sh
 
 
 def orders_of_motion(motion: MotionCurves, channel: Channel, like: ComplexOrders) -> ComplexOrders:
-    """Return the orders of a motion of ours at the orders ``like`` of a channel."""
+    """Return the orders of a motion of ours at the orders ``like`` of a channel.
+
+    An order that the motion does not have, such as a shaft order of like teeth, is 0.
+    """
     if channel.tooth_pair is None:
         every = motion.orders(channel.quantity, int(np.ceil(like.orders.max())))
-        places = np.round(like.orders * motion.mesh_cycles).astype(np.int64) - 1
-        selected = np.isin(np.arange(every.orders.size), places)
-        return every.only(selected)
+        places = like.orders * motion.mesh_cycles
+        index = np.round(places).astype(np.int64) - 1
+        has = (np.abs(places - np.round(places)) < _WHOLE) & (index >= 0) & (index < every.orders.size)
+        amplitudes = np.zeros(like.orders.size, dtype=np.complex128)
+        amplitudes[has] = every.values[index[has]]
+        none = np.zeros((2 * amplitudes.size, 2 * amplitudes.size))
+        return ComplexOrders(like.orders, amplitudes, every.mean, none, like.period)
     phases = np.arange(_SAMPLES * like.period) / _SAMPLES
     label = PAIR_LABELS[0]  # all labels have the same life
     # The end of the period is before A.

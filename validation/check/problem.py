@@ -50,10 +50,17 @@ class Problem:
     refined: Curves | None = None
 
     @classmethod
-    def of(cls, pair: GearPair, curves: Curves, motion: MotionCurves, shift: float | None = None) -> Problem:
+    def of(
+        cls,
+        pair: GearPair,
+        curves: Curves,
+        motion: MotionCurves,
+        shift: float | None = None,
+        refined: Curves | None = None,
+    ) -> Problem:
         """Return the problem of curves and a motion, with the mesh frequency that the curves show."""
         frequency = mesh_frequency(curves, pair, mistakes=curves.role == "model")
-        return cls(pair, curves, motion, frequency, shift)
+        return cls(pair, curves, motion, frequency, shift, refined)
 
     @cached_property
     def cycles(self) -> FloatArray:
@@ -121,12 +128,21 @@ class Problem:
         settled_channel = replace(channel, values=channel.values[used])
         return shows_contact(settled_channel, self.cycles[used], self.motion, shift)
 
-    def misfit_with(self, motion: MotionCurves, theirs: tuple[ChannelOrders, ...] | None = None) -> Misfit:
-        """Return the misfit of channels (by default those of the curves) and another motion of ours."""
+    def misfit_with(
+        self,
+        motion: MotionCurves,
+        theirs: tuple[ChannelOrders, ...] | None = None,
+        *,
+        free_shift: bool = False,
+    ) -> Misfit:
+        """Return the misfit of channels (by default those of the curves) and another motion of ours.
+
+        ``free_shift`` says whether the shift is searched although the user states it.
+        """
         misfit = misfit_of(
             self.theirs if theirs is None else theirs,
             motion,
-            shift=self.given_shift,
+            shift=None if free_shift else self.given_shift,
             near=self.coarse_shift,
             means=self.means,
         )

@@ -18,7 +18,8 @@ def tongues(x, y, centres, widths):
 
 def chart(shape, centres, widths):
     """Spectral radius and verdict of every node of a chart with these tongues; cycles a unit of time, x."""
-    x, y = np.linspace(1.0, 9.0, shape[0]), np.linspace(0.0, 0.1, shape[1])
+    x = np.linspace(1.0, 9.0, shape[0])
+    y = np.linspace(0.0, 0.1, shape[1])
     radius = np.exp(tongues(x[:, None], y[None, :], centres, widths) / x[:, None])
     return x, radius, np.where(radius > 1.0, -1, 1)
 
@@ -42,9 +43,10 @@ def test_what_is_evaluated_grows_as_the_edges_do_and_no_tongue_is_lost():
         got, _ = refined(shape, x, radius, verdict)
         assert (got.verdict == verdict).all()
         evaluated.append(got.known.sum())
-    assert evaluated[2] / evaluated[1] < 2.6
-    assert evaluated[1] / evaluated[0] < 2.6
-    assert evaluated[2] < 0.03 * 1601 * 400
+    coarse, middle, fine = evaluated
+    assert fine / middle < 2.6
+    assert middle / coarse < 2.6
+    assert fine < 0.03 * 1601 * 400
 
 
 def test_interpolated_radii_are_within_the_tolerance_where_the_growth_is_smooth():
@@ -58,7 +60,8 @@ def test_interpolated_radii_are_within_the_tolerance_where_the_growth_is_smooth(
 
 def test_a_node_asked_for_one_box_is_read_by_its_neighbours():
     """Waves in every direction: leaves are judged again by all nodes known in them."""
-    rng, (x, y) = np.random.default_rng(3), np.ogrid[0.0:1.0:257j, 0.0:1.0:65j]
+    rng = np.random.default_rng(3)
+    x, y = np.ogrid[0.0:1.0:257j, 0.0:1.0:65j]
     for _ in range(12):
         waves = [
             rng.normal() * np.cos(2.0 * np.pi * (f * x + h * y) + rng.uniform(0.0, 6.0))

@@ -193,7 +193,8 @@ def test_regions_are_named_measured_and_found_nearest(pair, monkeypatch) -> None
 
 
 def mathieu_point(point: dict[str, float]) -> PeriodicSystem:
-    a, q = point["a"], point["q"]
+    a = point["a"]
+    q = point["q"]
     return PeriodicSystem(lambda t: [[0.0, 1.0], [-(a - 2 * q * np.cos(2 * t)), 0.0]], np.pi)
 
 
@@ -224,7 +225,7 @@ def test_a_refined_scan_finds_the_boundaries_of_meissner(shape) -> None:
     delta = np.linspace(0.5, 9.0, shape[0])
     epsilon = np.linspace(0.0, 0.45, shape[1])
     got = scan(
-        lambda at: of_trace(meissner_trace(at["delta"], at["epsilon"])),
+        lambda point: of_trace(meissner_trace(point["delta"], point["epsilon"])),
         {"delta": delta, "epsilon": epsilon},
         refine=True,
     )
@@ -237,7 +238,8 @@ def test_a_refined_scan_finds_the_boundaries_of_meissner(shape) -> None:
 
 def test_refinement_finds_the_tongues_of_mathieu() -> None:
     """To m = 6, undecided where |multiplier| = 1, and be they thinner than a step of a."""
-    a, q = np.linspace(0.5, 42.0, 401), np.linspace(0.0, 12.0, 81)
+    a = np.linspace(0.5, 42.0, 401)
+    q = np.linspace(0.0, 12.0, 81)
 
     def ask(nodes):
         i, j = np.unravel_index(nodes, (a.size, q.size))
