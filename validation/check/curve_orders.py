@@ -46,10 +46,19 @@ BIN = 1.0 / 32.0
 
 
 class ChannelOrders(NamedTuple):
-    """A channel of another model by its complex orders."""
+    """A channel of another model by its complex orders.
+
+    Attributes
+    ----------
+    channel : the channel
+    orders : its orders
+    noise : root of the expected square that white noise of the samples adds to all orders, in the unit of
+        the channel
+    """
 
     channel: Channel
     orders: ComplexOrders
+    noise: float = 0.0
 
 
 def resolved_orders(cycles: FloatArray, period: int = 1, most: int = MESH_ORDERS) -> int:
@@ -195,6 +204,24 @@ def orders_of_motion(motion: MotionCurves, channel: Channel, like: ComplexOrders
     phases -= like.period * (phases >= int(motion.ahead.min()) + like.period)
     values = motion.at(channel.quantity, phases, label)
     return orders_of_period(values, round(like.orders.size / like.period), like.period)
+
+
+def white_noise(values: FloatArray) -> float:
+    """Return the standard deviation of white noise on a smooth curve, by its third differences.
+
+    The median is blind to the few samples at jumps. A third difference of white noise has 20 times its
+    variance, and the median of the size of a normal number is 0.6745 of its standard deviation.
+    """
+    differences = np.abs(np.diff(values, 3))
+    return float(np.median(differences)) / (0.6745 * np.sqrt(20.0)) if differences.size else 0.0
+
+
+def noise_in_orders(values: FloatArray, orders: int) -> float:
+    """Return the root of the expected square of white noise in a number of complex orders of samples (k,).
+
+    A complex amplitude of k samples with white noise has the variance 4 noise^2/k.
+    """
+    return white_noise(values) * float(np.sqrt(4.0 * orders / values.size))
 
 
 def coarse_shift(channels: Sequence[Channel], cycles: FloatArray, motion: MotionCurves) -> float:

@@ -14,6 +14,7 @@ from validation.check.curve_orders import (
     ChannelOrders,
     coarse_shift,
     compared_orders,
+    noise_in_orders,
     orders_of_channel,
     shows_contact,
 )
@@ -22,7 +23,10 @@ from validation.check.mesh_frequency import Frequency, mesh_frequency, nominal_c
 from validation.check.misfit import Misfit, misfit_of
 from validation.check.motion_curves import MotionCurves
 from validation.check.settled import Settled, settled
+from validation.signals.complex_orders import ComplexOrders, complex_orders
 
+#: Noise below this share of the motion needs no second estimate.
+_FREE_OF_NOISE = 2e-3
 #: Samples in a mesh cycle from which on high orders do not pass for low ones.
 _COARSE = 400.0
 
@@ -109,8 +113,37 @@ class Problem:
             used = self.used(channel)
             settled_channel = replace(channel, values=channel.values[used])
             orders = orders_of_channel(settled_channel, self.cycles[used], self.orders, self.motion, shift)
-            result.append(ChannelOrders(channel, orders))
+            noise = self._noise(settled_channel, self.cycles[used], orders)
+            result.append(ChannelOrders(channel, orders, noise))
         return tuple(result)
+
+    def _noise(self, channel: Channel, cycles: FloatArray, orders: ComplexOrders) -> float:
+        """Root of the expected square of the noise in all orders of a channel, see ``ChannelOrders``.
+
+        White noise is seen by differences of neighbouring samples, and by the difference of two halves of
+        the curves. Only the first takes jumps and high orders in few samples for noise, only the second a
+        motion that has not settled: the smaller one is noise. Curves of less than two cycles count as free
+        of noise.
+        """
+        white = noise_in_orders(channel.values, orders.orders.size)
+        period = orders.period
+        if white < _FREE_OF_NOISE * orders.size:
+            return white
+        if channel.tooth_pair is not None:
+            return white
+        half = int(np.ptp(cycles) + 1e-6) // (2 * period) * period
+        if half < 1:
+            return 0.0
+        ends = (cycles[-1] - half, cycles[-1] - 2 * half)
+        fits = []
+        for end in ends:
+            inside = (cycles > end + 1e-9) & (cycles <= end + half + 1e-9)
+            values = channel.values[inside]
+            if values.size < 2 * (2 * orders.orders.size + 1):
+                return 0.0
+            fits.append(complex_orders(cycles[inside], values, orders.orders, period=period))
+        of_halves = 0.5 * float(np.linalg.norm(fits[0].values - fits[1].values))
+        return min(white, of_halves)
 
     def used(self, channel: Channel) -> BoolArray:
         """(k,) samples of a channel that are compared.
