@@ -16,7 +16,7 @@ import numpy as np
 
 from lumped.arguments import real_number
 from lumped.errors import NumericalError, refuse
-from lumped.labelling import labelled_dataset, provenance
+from lumped.labelling import labelled_dataset
 from lumped.model.averaged import natural_frequencies
 from lumped.model.periodic_system import Supports, with_supports
 from lumped.schema.files import AnyPair, load_gear_pair
@@ -26,6 +26,7 @@ from validation.check.ladder import Explanation, Ladder, climb
 from validation.check.mesh_frequency import SAME
 from validation.check.misfit import LIMIT, Misfit
 from validation.check.motion_curves import MotionCurves
+from validation.check.origin import origin
 from validation.check.over_speed import SpeedMisfit, speed_misfit
 from validation.check.overlay import figure_data
 from validation.check.problem import Problem
@@ -225,8 +226,8 @@ class Check:
         return labelled_dataset(
             {name: ("channel", values, unit, words) for name, (values, unit, words) in columns.items()},
             {"channel": ([row.channel.channel.name for row in rows], "1", "channel")},
-            provenance(self.pair)
-            | {name: self.problem.motion.motion.attrs[name] for name in ("teeth", "contact", "supports")}
+            origin(self.pair)
+            | {"contact": self.problem.motion.motion.attrs["contact"]}
             | {"shift": self.problem.misfit.shift, "misfit": self.misfit, "verdict": self.verdict.value},
         )
 
