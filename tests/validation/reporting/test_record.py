@@ -101,7 +101,8 @@ def test_what_inputs_would_leave_is_blank_where_they_were_not_varied(wrong):
 
 
 def test_the_figure_draws_both_motions_and_their_orders(wrong, tmp_path):
-    (picture,) = blocks(wrong, Picture)
+    picture, ladder = blocks(wrong, Picture)
+    assert ladder.key == "explanations"  # what a record that contradicts is compatible with
     comparison = wrong.measured_error
     figure = picture.figure()
     for row, one in enumerate(comparison.channels):

@@ -8,6 +8,7 @@ import pytest
 
 import lumped
 from lumped.errors import ParameterError
+from lumped.model.results import plain
 from tests.unlike_pairs import unlike_pair
 from tests.validation.check.record.dynamic_motions import dynamic_record, motion
 from validation.check.record.channel import (
@@ -209,7 +210,7 @@ def test_inputs_move_the_prediction_by_as_much_as_their_samples_do():
 def test_a_phase_that_all_channels_share_is_no_uncertainty_of_the_inputs():
     # The same motion a fifth of a mesh cycle later: a record would be shifted by as much.
     nominal = motion_of("25/103")
-    later = dataclasses.replace(nominal, cycle=nominal.cycle.roll(time=102, roll_coords=False))
+    later = dataclasses.replace(nominal, plain=plain(nominal.cycle.roll(time=102, roll_coords=False)))
     comparison = compared("25/103", samples=Varied(nominal, (later,)))
     for one in comparison.channels:
         assert np.sqrt(one.by_inputs.max()) < 1e-3 * one.scale
