@@ -244,21 +244,41 @@ def coarse_shift(channels: Sequence[Channel], cycles: FloatArray, motion: Motion
 
 
 def without_ramp(cycles: FloatArray, values: FloatArray) -> FloatArray:
-    """Return the values of a rotation less its constant speed.
+    """Return the values of a rotation less its constant speed and its drift.
 
-    The line is fitted together with the mesh orders, because a line alone would bend to the vibration. Curves
-    of about one mesh cycle cannot tell a line from the orders: there the line joins both ends, if the line
-    is most of the curve.
+    Curves of about one mesh cycle cannot tell a line from the orders: there the line joins both ends, if the
+    line is most of the curve.
     """
     reach = max(float(np.ptp(cycles)), 1e-300)
+    if reach >= _LINE_AND_ORDERS:
+        middle = cycles - cycles.mean()
+        parabola = np.stack([middle, middle**2], axis=1)
+        return np.asarray(values - parabola @ _rotation(cycles, values))
+    rise = (values[-1] - values[0]) / reach
+    line = rise * (cycles - cycles[0])
+    return np.asarray(values - line) if abs(rise) * reach > float(np.ptp(values - line)) else values
+
+
+def drift(cycles: FloatArray, values: FloatArray) -> float:
+    """Return how far a rotation leaves its constant speed at both ends of the curves [rad].
+
+    Torques that do not balance make it drift. 0 for curves of about one mesh cycle.
+    """
+    reach = float(np.ptp(cycles))
     if reach < _LINE_AND_ORDERS:
-        rise = (values[-1] - values[0]) / reach
-        rest = values - rise * (cycles - cycles[0])
-        rise = rise if abs(rise) * reach > float(np.ptp(rest)) else 0.0
-    else:
-        orders = np.arange(1.0, max(resolved_orders(cycles), 1) + 1.0)
-        angle = 2.0 * np.pi * np.multiply.outer(cycles, orders)
-        line = np.stack([np.ones(cycles.size), cycles - cycles.mean()], axis=1)
-        columns = np.hstack([line, np.cos(angle), np.sin(angle)])
-        rise = np.linalg.lstsq(columns, values - values.mean(), rcond=None)[0][1]
-    return np.asarray(values - float(rise) * (cycles - cycles[0]))
+        return 0.0
+    return abs(float(_rotation(cycles, values)[1])) * (0.5 * reach) ** 2
+
+
+def _rotation(cycles: FloatArray, values: FloatArray) -> FloatArray:
+    """Coefficients (2,) of the line and the parabola about the middle of a rotation.
+
+    They are fitted together with the mesh orders: alone they would bend to the vibration.
+    """
+    orders = np.arange(1.0, max(resolved_orders(cycles), 1) + 1.0)
+    angle = 2.0 * np.pi * np.multiply.outer(cycles, orders)
+    middle = cycles - cycles.mean()
+    parabola = np.stack([np.ones(cycles.size), middle, middle**2], axis=1)
+    columns = np.hstack([parabola, np.cos(angle), np.sin(angle)])
+    fit = np.linalg.lstsq(columns, values - values.mean(), rcond=None)[0]
+    return np.asarray(fit[1:3], dtype=np.float64)

@@ -151,3 +151,28 @@ def test_a_known_phase_is_used():
     curves = sampled(pair, SEVERAL, phase=0.37)
     assert check(pair, curves, phase=0.37).agrees
     assert not check(pair, curves, phase=0.5, explain=False).agrees
+
+
+def test_a_rotation_whose_torques_do_not_balance_drifts():
+    pair = unlike_pair(NAMES[0])
+
+    def drifting(name, values, time):
+        return values + 3.0 * np.ptp(values) * (time / time[-1]) ** 2 if name == "theta_p" else values
+
+    curves = sampled(pair, ("dte", "theta_p"), cycles=12, change=drifting)
+    result = check(pair, curves)
+    assert result.agrees, result.words
+    (remark,) = result.remarks
+    brake = float(result.problem.motion.motion.attrs["brake_torque"])
+    assert "theta_p" in remark
+    assert f"{brake:.5g} N m" in remark
+    assert not check(pair, sampled(pair, ("dte", "theta_p"), cycles=12)).remarks
+
+
+def test_a_function_that_does_not_read_the_speed_has_no_rung_at_low_speed():
+    pair = unlike_pair(NAMES[0])
+    curves = sampled(pair, ("dte",))
+    named = {"time": curves.places, "dte": curves.channels[0].values}
+    result = check(pair, lambda parameters: named)
+    assert result.low_speed is None
+    assert result.agrees
