@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from floquet.engine.monodromy import checked_effort, monodromy
-from floquet.engine.multipliers import Spectrum, radii_with_bounds, verdicts
+from floquet.engine.multipliers import VERDICTS, Spectrum, radii_with_bounds, verdicts
 from floquet.engine.refinement import gaps
 from floquet.engine.refinement import refine as refined
 from floquet.engine.system import PeriodicSystem
@@ -72,7 +72,7 @@ class ChartPoints:
     Attributes
     ----------
     radius, error : (count,) spectral radius and the bound on its error, or an estimate of the error
-    verdict : (count,) 1 stable, 0 undecided, -1 unstable
+    verdict : (count,) 1 stable, 0 undecided, -1 unstable, 2 neutral
     proven : (count,) whether the error is a proven bound
     known : (count,) whether the point was evaluated; the others are interpolated
     gap : (count,) `gaps` of evaluated points; None where every point is evaluated
@@ -99,12 +99,16 @@ class ChartPoints:
         errors: FloatArray,
         proven: bool | BoolArray,
         coupled: int | None = None,
+        neutral: bool | BoolArray = False,
     ) -> None:
-        """Store multipliers (k, size) of points (k,) and bounds on their errors, the ``coupled`` first."""
+        """Store multipliers (k, size) of points (k,) and bounds on their errors, the ``coupled`` first.
+
+        ``neutral`` (k,): all multipliers are proven to be simple and on the unit circle.
+        """
         radius, error = radii_with_bounds(values, errors)
         self.radius[points] = radius
         self.error[points] = error
-        self.verdict[points] = verdicts(radius, error)
+        self.verdict[points] = verdicts(radius, error, neutral)
         self.proven[points] = proven
         self.known[points] = True
         if self.gap is not None:
@@ -241,7 +245,11 @@ def scan(
                 raise refuse("evaluate", counts, f"{size[0]} as at the first point", advice)
             proven = spectrum.certificate == "proven"
             points.put(
-                np.array([place]), spectrum.multipliers[None], spectrum.multiplier_errors[None], proven
+                np.array([place]),
+                spectrum.multipliers[None],
+                spectrum.multiplier_errors[None],
+                proven,
+                neutral=spectrum.neutral,
             )
             if progress is not None and not refine:
                 progress(len(size) / points.radius.size)
@@ -285,7 +293,10 @@ def chart_dataset(grid: Mapping[str, FloatArray], points: ChartPoints) -> xr.Dat
             points.error,
             "error of the spectral radius: a bound where evaluated, an estimate elsewhere",
         ),
-        "verdict": (points.verdict, "stability verdict, undecided where the bound contains 1"),
+        "verdict": (
+            points.verdict,
+            "stability verdict, undecided where the bound contains 1, neutral: proven on it",
+        ),
         "proven": (points.proven, "whether the error is a proven bound, else an estimate"),
         "known": (points.known, "whether the node was evaluated, else interpolated"),
     }
@@ -305,7 +316,7 @@ def chart_dataset(grid: Mapping[str, FloatArray], points: ChartPoints) -> xr.Dat
             text,
         )
     dataset = labelled_dataset(variables, {name: (values, "", name) for name, values in grid.items()})
-    dataset["verdict"].attrs.update(flag_values=[-1, 0, 1], flag_meanings="unstable undecided stable")
+    dataset["verdict"].attrs.update(flag_values=[*VERDICTS], flag_meanings=" ".join(VERDICTS.values()))
     proven = points.proven
     dataset.attrs["certificate"] = "proven" if proven.all() else "mixed" if proven.any() else "estimate"
     return dataset

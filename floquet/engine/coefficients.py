@@ -15,11 +15,13 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
+from floquet.engine.neutral import hamiltonian
 from lumped.arguments import real_array, real_number, real_numbers
 from lumped.errors import refuse, shown
 from lumped.typing import FloatArray
 
 _U = 0.5 * float(np.finfo(np.float64).eps)
+_SAME_PERIOD = 1e-9  # part of a period by which two statements of one period may differ
 
 
 class Coefficient(ABC):
@@ -43,17 +45,22 @@ class Coefficient(ABC):
         Returns (k, degree + 1) coefficients of the powers of s, and (k,) bounds on their errors.
         """
 
-    def repeats(self, period: float) -> bool:
-        """Whether the function has the same values one period later.
+    @property
+    def own_period(self) -> float | None:
+        """The shortest period that the function states [s]; None: a constant, a sum or a product."""
+        return None
 
-        True for a function with breaks: only its first period is used.
+    @abstractmethod
+    def repeats(self, period: float) -> bool:
+        """Whether the function repeats after a period [s] of the system, to 1e-9 of the period.
+
+        The period of the system is a whole number of periods of the function.
         """
-        if self.breaks:
-            return True
-        times = period * np.array([0.0, 0.17, 0.31, 0.47, 0.61, 0.83])
-        first = self(times)
-        later = self(times + period)
-        return bool(np.abs(later - first).max() <= 1e-9 * np.abs(first).max())
+
+    def over(self, period: float) -> Coefficient:
+        """The function with all its pieces from 0 to the period [s] of the system, which it `repeats`."""
+        del period
+        return self
 
     def __add__(self, other: Coefficient | float) -> Coefficient:
         """The sum."""
@@ -82,9 +89,12 @@ class Coefficient(ABC):
 class PiecewisePolynomial(Coefficient):
     """One polynomial on each interval between increasing times.
 
+    In a `PeriodicSystem` the pieces together are one period of the function, or the period of the system is a
+    whole number of times as long.
+
     Parameters
     ----------
-    breaks : (P+1,) ends of the pieces [s]; the first and the last piece continue beyond the ends
+    breaks : (P+1,) ends of the pieces [s]; a polynomial by itself continues beyond the ends
     coefficients : (P, d+1) of the powers of the time since the start of the piece, lowest power first
     """
 
@@ -95,6 +105,30 @@ class PiecewisePolynomial(Coefficient):
             allowed = f"({self._ends.size - 1}, degree + 1), finite"
             raise refuse("coefficients", f"shape {self._rows.shape}", allowed, "Give one row per piece.")
         self.breaks = tuple(self._ends.tolist())
+        self._span = float(self._ends[-1] - self._ends[0])
+
+    @property
+    def own_period(self) -> float:
+        """See `Coefficient`: the pieces together."""
+        return self._span
+
+    def repeats(self, period: float) -> bool:
+        """See `Coefficient`."""
+        return _whole(period, self._span) > 0
+
+    def over(self, period: float) -> PiecewisePolynomial:
+        """See `Coefficient`; the breaks of each repetition are rounded."""
+        start, end = self._ends[[0, -1]]
+        count = _whole(period, self._span)
+        if count == 1 and start <= 0.0 and end >= period * (1.0 - _SAME_PERIOD):
+            return self
+        first = math.floor(-start / self._span)
+        last = first + count + bool(start + first * self._span < 0.0)
+        ends = np.concatenate([self._ends[:-1] + k * self._span for k in range(first, last)])
+        ends = np.append(ends, start + last * self._span)
+        repeated = PiecewisePolynomial(ends, np.tile(self._rows, (last - first, 1)))
+        repeated._span = count * self._span
+        return repeated
 
     def _piece(self, times: FloatArray) -> npt.NDArray[np.intp]:
         return np.clip(np.searchsorted(self._ends, times, side="right") - 1, 0, self._ends.size - 2)
@@ -144,12 +178,24 @@ class FourierSeries(Coefficient):
         self, period: float, mean: float, cosines: Sequence[float] = (), sines: Sequence[float] = ()
     ) -> None:
         count = max(len(cosines), len(sines))
-        self._omega = 2.0 * math.pi / real_number("period", period, 0.0, above=True, unit="s")
+        self._period = real_number("period", period, 0.0, above=True, unit="s")
+        self._omega = 2.0 * math.pi / self._period
         self._mean = real_number("mean", mean)
         self._a, self._b = (np.zeros(count) for _ in range(2))
         self._a[: len(cosines)] = cosines
         self._b[: len(sines)] = sines
         self._order = np.arange(1, count + 1)
+
+    @property
+    def own_period(self) -> float | None:
+        """See `Coefficient`; harmonics of the orders 2, 4, 6 alone have half the period, and so on."""
+        orders = self._order[(self._a != 0.0) | (self._b != 0.0)]
+        return self._period / float(np.gcd.reduce(orders)) if orders.size else None
+
+    def repeats(self, period: float) -> bool:
+        """See `Coefficient`."""
+        own_period = self.own_period
+        return own_period is None or _whole(period, own_period) > 0
 
     def __call__(self, times: npt.ArrayLike) -> FloatArray:
         """See `Coefficient`."""
@@ -180,12 +226,30 @@ class FourierSeries(Coefficient):
         return out, 1.001 * (size * (factor + rounding)).sum(axis=1) + 2.0 * _U * abs(self._mean)
 
 
-class _Sum(Coefficient):
+class _OfTwo(Coefficient):
+    """A sum or a product."""
+
     def __init__(self, first: Coefficient, second: Coefficient) -> None:
         self._first = first
         self._second = second
         self.breaks = first.breaks + second.breaks
 
+    def repeats(self, period: float) -> bool:
+        """See `Coefficient`: both parts repeat, or without breaks the samples of the sum or product do."""
+        if self._first.repeats(period) and self._second.repeats(period):
+            return True
+        if self.breaks:
+            return False
+        times = period * np.array([0.0, 0.17, 0.31, 0.47, 0.61, 0.83])
+        first = self(times)
+        return bool(np.abs(self(times + period) - first).max() <= _SAME_PERIOD * np.abs(first).max())
+
+    def over(self, period: float) -> Coefficient:
+        """See `Coefficient`."""
+        return type(self)(self._first.over(period), self._second.over(period)) if self.breaks else self
+
+
+class _Sum(_OfTwo):
     def __call__(self, times: npt.ArrayLike) -> FloatArray:
         return self._first(times) + self._second(times)
 
@@ -194,12 +258,7 @@ class _Sum(Coefficient):
         return a + b, (da + db + 2.0 * _U * (np.abs(a) + np.abs(b)).sum(axis=1)) * (1.0 + 8.0 * _U)
 
 
-class _Product(Coefficient):
-    def __init__(self, first: Coefficient, second: Coefficient) -> None:
-        self._first = first
-        self._second = second
-        self.breaks = first.breaks + second.breaks
-
+class _Product(_OfTwo):
     def __call__(self, times: npt.ArrayLike) -> FloatArray:
         return self._first(times) * self._second(times)
 
@@ -213,6 +272,12 @@ class _Product(Coefficient):
         errors = np.abs(out[:, degree + 1 :]).sum(axis=1) + da * size_b + db * size_a + da * db
         errors += (degree + 8.0) * 2.0 * _U * size_a * size_b
         return out[:, : degree + 1], errors * (1.0 + 8.0 * _U)
+
+
+def _whole(period: float, of_function: float) -> int:
+    """How many periods of a function are one period of a system; 0: no whole number."""
+    count = round(period / of_function)
+    return count if abs(period - count * of_function) <= _SAME_PERIOD * of_function * max(count, 1) else 0
 
 
 def _as_coefficient(value: Coefficient | float) -> Coefficient:
@@ -260,6 +325,29 @@ class PeriodicMatrix:
         self.functions = tuple(function for function, _ in terms)
         self.breaks = tuple(sorted({t for function in self.functions for t in function.breaks}))
         self._errors = np.zeros_like(self.matrices) if errors is None else errors
+
+    @property
+    def hamiltonian(self) -> bool:
+        """Whether J A(t) is symmetric at all times, J = [[0, I], [-I, 0]], by the exact matrices."""
+        return not self._errors.any() and hamiltonian(self.matrices)
+
+    def over(self, name: str, period: float) -> PeriodicMatrix:
+        """The matrix with all pieces of its functions from 0 to the period [s]; refuses another period.
+
+        ``name`` is that of the matrix in the refusal.
+        """
+        for k, function in enumerate(self.functions, 1):
+            if not function.repeats(period):
+                allowed = f"a function that repeats after the period, {period:g} s"
+                stated = function.own_period
+                value = "another period" if stated is None else f"the period {stated:g} s"
+                raise refuse(f"{name}, term {k}", value, allowed, "Correct one of the two periods.")
+        functions = [function.over(period) for function in self.functions]
+        if all(new is old for new, old in zip(functions, self.functions, strict=True)):
+            return self
+        return PeriodicMatrix(
+            self.matrices[0], *zip(functions, self.matrices[1:], strict=True), errors=self._errors
+        )
 
     def __call__(self, times: FloatArray) -> FloatArray:
         """Values at times (k,), (k, n, n)."""

@@ -20,6 +20,7 @@ sections are those of docs/theory/proven_bounds.md. tests/floquet/engine/test_pr
 | the product of any steps is wrong by at most this | floquet/engine/formula_steps.py: proven_product | The product |
 | each disk holds an eigenvalue: quick bound, by eigenvectors | floquet/rank_one/kernels/eigenvalue_bounds.py: spectra | Multipliers |
 | each disk holds an eigenvalue: careful bound, by the Schur form | floquet/engine/multipliers.py: multipliers_with_bounds | Multipliers |
+| without damping all multipliers are simple and on the unit circle | floquet/engine/neutral.py: on_unit_circle | On the unit circle |
 | motions off the line of action have these multipliers | floquet/gear/multipliers.py: OffLineOfAction | Multipliers |
 | with teeth that differ the rate is wrong by at most this | floquet/gear/multipliers.py: _of_cycles | Teeth that differ |
 | all slower speeds are stable | floquet/rank_one/boxes.py: slow_period | Between the nodes of a chart |

@@ -43,7 +43,7 @@ class Refined:
     Attributes
     ----------
     radius : spectral radius, interpolated where ``known`` is False
-    verdict : 1 stable, 0 undecided, -1 unstable; the verdict of the leaf where ``known`` is False
+    verdict : 1 stable, 0 undecided, -1 unstable, 2 neutral; the verdict of the leaf where ``known`` is False
     known : whether the node was evaluated
     misfit : largest misfit of the evaluated nodes of the leaf, at least the tolerance; 0 at evaluated nodes
     """
@@ -175,7 +175,7 @@ class _State:
         if not mixed:
             radius = self.radius[i, j]
             allowed = tolerance * np.maximum(radius, 1.0)
-            if verdict[0] != 0:
+            if abs(verdict[0]) == 1:
                 allowed = np.minimum(allowed, 0.5 * np.abs(radius - 1.0))
             if (error <= allowed).all():
                 excess = radius - 1.0

@@ -16,6 +16,7 @@ import numpy.typing as npt
 from scipy.linalg import LinAlgError, cholesky, eigh
 
 from floquet.engine.coefficients import PeriodicMatrix, square
+from floquet.engine.neutral import conservative
 from floquet.engine.system import PeriodicSystem, second_order
 from lumped.arguments import real_number
 from lumped.errors import NumericalError, refuse
@@ -37,9 +38,17 @@ class SecondOrderSystem(PeriodicSystem):
     ----------
     coordinates : (n, n) T; where M is symmetric and positive definite, the modes of M and the symmetric part
         of the mean of K, with modal mass one
+    conservative : whether M and K(t) are exactly symmetric and C is exactly skew and constant: no motion is
+        damped or driven. False where C or K is a callable
     """
 
     coordinates: FloatArray = field(kw_only=True, repr=False)
+    conservative: bool = field(default=False, kw_only=True)
+
+    @property
+    def symplectic(self) -> bool:
+        """See `PeriodicSystem`; proven by M, C and K, because A(t) is rounded."""
+        return self.conservative
 
 
 def from_second_order(
@@ -48,7 +57,8 @@ def from_second_order(
     """Return M x'' + C(t) x' + K(t) x = 0 as a `PeriodicSystem`.
 
     C and K need not be symmetric: gyroscopic and circulatory parts belong to them. Errors are proven bounds,
-    rounding of M^-1 K included, where neither of them is a callable.
+    rounding of M^-1 K included, where neither of them is a callable. Without damping, stability is proven too
+    (verdict "neutral") where M and all matrices of K are exactly symmetric and C is 0 or constant and skew.
 
     Parameters
     ----------
@@ -83,7 +93,8 @@ def from_second_order(
     T = _coordinates(mass, mean)
     if isinstance(damping, PeriodicMatrix) and isinstance(stiffness, PeriodicMatrix):
         A = _known(mass, damping, stiffness, T)
-        return SecondOrderSystem(A, period, breakpoints, coordinates=T)
+        undamped = conservative(mass, damping.matrices, stiffness.matrices)
+        return SecondOrderSystem(A, period, breakpoints, coordinates=T, conservative=undamped)
     inverse = np.linalg.inv(mass @ T)
 
     def sampled(times: FloatArray) -> FloatArray:
@@ -104,11 +115,7 @@ def _checked(
     if result.dimension != n:
         shape = f"({result.dimension}, {result.dimension})"
         raise refuse(name, f"shape {shape}", f"that of M, ({n}, {n})", "Check the coordinates of both.")
-    for k, function in enumerate(result.functions, 1):
-        if not function.repeats(period):
-            allowed = f"a function that repeats after the period, {period:g} s"
-            raise refuse(f"{name}, term {k}", "another period", allowed, "Correct one of the two periods.")
-    return result
+    return result.over(name, period)
 
 
 def _function(

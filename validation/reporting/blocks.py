@@ -19,6 +19,7 @@ STATES = {
     "ok": "good",
     "agrees": "good",
     "stable": "good",
+    "neutral": "good",
     "warning": "fair",
     "differs": "fair",
     "undecided": "fair",

@@ -22,7 +22,7 @@ def write(results: Results) -> Content:
     share = float(np.mean(results.stability_line < 0))
     some = "no speed" if share == 0.0 else f"{100 * share:.2g} % of the speeds"
     result = (
-        f"At the operating point the linear motion is {multipliers.verdict}; at the given damping "
+        f"At the operating point the linear motion is {multipliers.verdict_words}; at the given damping "
         f"{some} from {low} to {high} rpm {'is' if some == 'no speed' else 'are'} unstable"
         f"{results.on_springs}."
     )
@@ -60,8 +60,8 @@ def _stability_table(results: Results) -> Table:
     chart = results.chart
     multipliers = results.multipliers
     radius = multipliers.spectral_radius
-    error = f"error at most {multipliers.error:.1e}: {multipliers.verdict}"
-    cycles = np.log(0.5) / np.log(radius)
+    error = f"error at most {multipliers.error:.1e}: {multipliers.verdict_words}"
+    cycles = math.inf if multipliers.neutral else np.log(0.5) / np.log(radius)
     numbers = [
         NamedNumber("largest Floquet multiplier", radius, "1", error),
         NamedNumber("a disturbance is halved in", cycles, "1", "mesh cycles"),
