@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from floquet.engine.monodromy import checked_effort, monodromy
-from floquet.engine.multipliers import VERDICTS, Spectrum, radii_with_bounds, verdicts
+from floquet.engine.monodromy import checked_effort
+from floquet.engine.multipliers import VERDICTS, radii_with_bounds, verdicts
+from floquet.engine.nodes import TOGETHER, Family, node_spectra, refuse_other_sizes
 from floquet.engine.refinement import gaps
 from floquet.engine.refinement import refine as refined
-from floquet.engine.system import PeriodicSystem
-from lumped.arguments import of_type, real_numbers, some_of
-from lumped.errors import NumericalError, refuse, shown
+from lumped.arguments import real_numbers, some_of
+from lumped.errors import refuse, shown
 from lumped.labelling import Variable, labelled_dataset
 from lumped.typing import BoolArray, ComplexArray, FloatArray, IntArray, Progress
 
@@ -185,10 +185,6 @@ def refine_planes(
         tell(1.0)
 
 
-Family = Callable[[dict[str, float]], Spectrum | PeriodicSystem]
-"""Parameters -> the periodic system there, or its multipliers."""
-
-
 def scan(
     evaluate: Family,
     axes: Axes,
@@ -234,25 +230,24 @@ def scan(
     size: list[int] = []
 
     def at(places: IntArray) -> None:
-        for place in places:
-            node = np.unravel_index(int(place), shape)
-            point = {name: float(grid[name][i]) for name, i in zip(names, node, strict=True)}
-            spectrum = _at_point(evaluate, rtol, point)
-            size.append(spectrum.multipliers.size)
-            if size[-1] != size[0]:
-                counts = f"{size[-1]} multipliers at {_place(point)}"
-                advice = "Keep the number of coordinates over the axes."
-                raise refuse("evaluate", counts, f"{size[0]} as at the first point", advice)
-            proven = spectrum.certificate == "proven"
-            points.put(
-                np.array([place]),
-                spectrum.multipliers[None],
-                spectrum.multiplier_errors[None],
-                proven,
-                neutral=spectrum.neutral,
-            )
+        for first in range(0, places.size, TOGETHER):
+            some_places = places[first : first + TOGETHER]
+            nodes = np.transpose(np.unravel_index(some_places, shape)).tolist()
+            some_points = [
+                {name: float(grid[name][i]) for name, i in zip(names, node, strict=True)} for node in nodes
+            ]
+            for result in node_spectra(evaluate, some_points, rtol):
+                size.append(result.multipliers.shape[1])
+                refuse_other_sizes(size[0], size[-1], some_points[result.points[0]])
+                points.put(
+                    some_places[result.points],
+                    result.multipliers,
+                    result.errors,
+                    result.proven,
+                    neutral=result.neutral,
+                )
             if progress is not None and not refine:
-                progress(len(size) / points.radius.size)
+                progress((first + some_places.size) / points.radius.size)
 
     if refine:
         refine_planes(grid, (plane[0], plane[1]), points, at, progress=progress)
@@ -262,20 +257,6 @@ def scan(
     for name, (unit, text) in labels.items():
         chart[name].attrs.update(units=unit, long_name=text)
     return chart
-
-
-def _at_point(evaluate: Family, rtol: float, point: dict[str, float]) -> Spectrum:
-    try:
-        result = evaluate(point)
-        if isinstance(result, PeriodicSystem):
-            return monodromy(result, rtol)
-        return of_type("evaluate", result, Spectrum, "a function that returns a PeriodicSystem or a Spectrum")
-    except NumericalError as failure:
-        raise NumericalError(f"at {_place(point)}: {failure}") from failure
-
-
-def _place(point: Mapping[str, float]) -> str:
-    return ", ".join(f"{name} = {value:g}" for name, value in point.items())
 
 
 def chart_dataset(grid: Mapping[str, FloatArray], points: ChartPoints) -> xr.Dataset:

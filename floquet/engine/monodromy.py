@@ -23,8 +23,8 @@ from lumped.arguments import of_type, real_number, whole_number
 from lumped.errors import NumericalError
 from lumped.typing import FloatArray
 
-# Where |M| is below this, the tolerance is no longer relative: such a system is dead after one period.
-_DEAD = 1e-150
+DEAD = 1e-150
+"""Where |M| is below this, the tolerance is no longer relative: such a system is dead after one period."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,7 +97,7 @@ def monodromy(
     for _attempt in range(4):
         propagation = propagate(system, step, local, max_substeps)
         M, delta, rounding = error_of_product(propagation)
-        size = max(float(np.linalg.norm(M, 2)), _DEAD)
+        size = max(float(np.linalg.norm(M, 2)), DEAD)
         if delta <= rtol * size:
             return _record(system, propagation, M, delta, step.name, "estimate")
         if rounding > 0.9 * rtol * size:
@@ -157,7 +157,7 @@ def _record(
 
 def _proven(system: PeriodicSystem, A: PeriodicMatrix, rtol: float, max_substeps: int) -> Monodromy:
     propagation, M, delta = proven_propagation(system, A, rtol, max_substeps)
-    size = max(float(np.linalg.norm(M, 2)), _DEAD)
+    size = max(float(np.linalg.norm(M, 2)), DEAD)
     if not delta <= rtol * size:
         raise NumericalError(
             f"rtol = {rtol:g} cannot be proven: the bound on the error of the monodromy matrix is "
