@@ -23,7 +23,7 @@ from lumped.typing import BoolArray, FloatArray, IntArray
 
 _U = 0.5 * float(np.finfo(np.float64).eps)
 _DEGREE = 14
-_ANGLE = 1.0  # largest sum of |A_j| h of a step
+_ANGLE = 0.7  # largest sum of |A_j| h of a step
 _TERMS = np.array([14, 17, 20, 28, 40])  # numbers of Taylor terms to choose from
 _TAIL = 0.02  # part of the allowed error of a step that the neglected terms may make
 _RADII = np.array([1.5, 2.0, 3.0, 4.5, 7.0, 11.0, 18.0, 30.0, 60.0])
@@ -271,9 +271,9 @@ def _products(steps: FloatArray, errors: FloatArray, ends: IntArray) -> tuple[Fl
 
 
 def proven_product(steps: FloatArray, errors: FloatArray) -> tuple[FloatArray, float]:
-    """Product of steps (m, n, n) with a PROVEN bound on its error; ``errors`` (m,) bound those of the steps.
+    """Product of steps (m, n, n) with the bound of `product_bounds`; ``errors`` (m,) bound those of the steps.
 
-    ``errors`` are 2-norms, the bound is a Frobenius norm. Source: docs/theory/proven_bounds.md, "The product".
+    ``errors`` are 2-norms, the bound is a Frobenius norm.
     """
     flows, bounds = _products(steps, errors, np.array([0, len(steps)]))
     return flows[0], float(bounds[0])
