@@ -85,7 +85,9 @@ def from_second_order(
     damping = _checked("C", C, n, period)
     stiffness = _checked("K", K, n, period)
     # Breaks of the formulas, and a first check of the callables.
-    places = PeriodicSystem(lambda t: np.zeros((1, 1)), period, breakpoints).edges
+    places = np.array([0.0, period])
+    if np.size(breakpoints):
+        places = PeriodicSystem(lambda t: np.zeros((1, 1)), period, breakpoints).edges
     middle = 0.5 * (places[:-1] + places[1:])
     C_of, K_of = (_function(name, B, n) for name, B in (("C", damping), ("K", stiffness)))
     C_of(middle)
@@ -149,25 +151,23 @@ def _known(M: FloatArray, C: PeriodicMatrix, K: PeriodicMatrix, T: FloatArray) -
     n = M.shape[0]
     solve = _Solution(M, T)
 
-    def pair(stiffness: FloatArray, damping: FloatArray) -> tuple[FloatArray, FloatArray]:
-        k, dk = solve(stiffness)
-        c, dc = solve(damping)
-        errors = np.abs(second_order(dk, dc))
-        errors[:n, n:] = 0.0
-        return second_order(k, c), errors
+    matrices = np.concatenate([K.matrices, C.matrices])
+    solved, inexact = solve(matrices)
+    count = len(K.matrices)
+    none = np.zeros_like(matrices[:1])
 
-    none = np.zeros((n, n))
-    constant, error = pair(K.matrices[0], C.matrices[0])
-    terms = []
-    errors = [error]
-    varying = [(f, B, none) for f, B in zip(K.functions, K.matrices[1:], strict=True)]
-    varying += [(f, none, B) for f, B in zip(C.functions, C.matrices[1:], strict=True)]
-    for function, stiffness, damping in varying:
-        matrix, error = pair(stiffness, damping)
-        matrix[:n, n:] = 0.0
-        terms.append((function, matrix))
-        errors.append(error)
-    return PeriodicMatrix(constant, *terms, errors=np.stack(errors))
+    def blocks(X: FloatArray) -> FloatArray:
+        """State matrices of the constant parts, of the terms of K and of the terms of C."""
+        stiffness = [X[:count], np.repeat(none, len(X) - count - 1, axis=0)]
+        damping = [X[count : count + 1], np.repeat(none, count - 1, axis=0), X[count + 1 :]]
+        return second_order(np.concatenate(stiffness), np.concatenate(damping))
+
+    state_matrices = blocks(solved)
+    state_matrices[1:, :n, n:] = 0.0
+    errors = np.abs(blocks(inexact))
+    errors[:, :n, n:] = 0.0
+    functions = (*K.functions, *C.functions)
+    return PeriodicMatrix(state_matrices[0], *zip(functions, state_matrices[1:], strict=True), errors=errors)
 
 
 class _Solution:
@@ -193,6 +193,7 @@ class _Solution:
             raise NumericalError("M is too badly conditioned for bounds. Choose other units or coordinates.")
 
     def __call__(self, B: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """X (k, n, n) of B (k, n, n), and bounds on the errors of its entries."""
         Q = B.astype(_WIDE) @ self.T
         X = np.zeros(B.shape)
         for _ in range(3):
@@ -201,4 +202,4 @@ class _Solution:
         moduli = np.abs(residual).astype(float) + np.abs(B) @ np.abs(self.T).astype(float)
         moduli += 2.0 * self.size @ np.abs(X)
         error = np.abs(self.W @ residual).astype(float) + self.gamma * (self.sizes @ moduli)
-        return X, np.asarray((error + self.g / (1.0 - self.g) * error.max(axis=0)) * (1.0 + 1e-9))
+        return X, np.asarray((error + self.g / (1.0 - self.g) * error.max(axis=-2, keepdims=True)) * (1.0 + 1e-9))
