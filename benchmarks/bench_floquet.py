@@ -28,7 +28,16 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import lumped
-from floquet import fast_multipliers, gear_block, stability_chart
+from floquet import (
+    FourierSeries,
+    PeriodicMatrix,
+    SecondOrderSystem,
+    fast_multipliers,
+    from_second_order,
+    gear_block,
+    scan,
+    stability_chart,
+)
 from lumped.errors import LawRangeWarning
 from lumped.model.periodic_system import Supports
 from lumped.schema.pair import GearPair
@@ -227,6 +236,59 @@ def on_shafts(size: int, points: int) -> None:
     )
 
 
+#: Mean stiffness and shape of its variation of one oscillator, and of three.
+OSCILLATORS = (
+    (np.array([[3.0]]), np.array([[1.0]])),
+    (np.diag([1.0, 2.9, 9.6]), np.array([[1.0, 0.5, -0.3], [0.5, -0.8, 0.6], [-0.3, 0.6, 0.4]])),
+)
+
+
+def oscillators(mean: np.ndarray, shape: np.ndarray) -> Callable[[dict[str, float]], SecondOrderSystem]:
+    """The family x'' + (mean + depth shape cos(frequency t)) x = 0."""
+    none = np.zeros_like(mean)
+
+    def at(point: dict[str, float]) -> SecondOrderSystem:
+        period = 2.0 * math.pi / point["frequency"]
+        wave = FourierSeries(period, 0.0, [point["depth"]])
+        return from_second_order(np.eye(len(mean)), none, PeriodicMatrix(mean, (wave, shape)), period)
+
+    return at
+
+
+def monodromy_by_solver(mean: np.ndarray, shape: np.ndarray, point: dict[str, float]) -> np.ndarray:
+    """Monodromy matrix of `oscillators` by DOP853 on the matrix."""
+    m = len(mean)
+
+    def rates(t: float, y: np.ndarray) -> np.ndarray:
+        X = y.reshape(2 * m, 2 * m)
+        K = mean + point["depth"] * math.cos(point["frequency"] * t) * shape
+        return np.concatenate([X[m:], -K @ X[:m]]).ravel()
+
+    period = 2.0 * math.pi / point["frequency"]
+    end = solve_ivp(rates, (0.0, period), np.eye(2 * m).ravel(), method="DOP853", rtol=1e-9, atol=1e-11)
+    return np.asarray(end.y[:, -1].reshape(2 * m, 2 * m))
+
+
+def scans(count: int) -> None:
+    """Charts of any system by `floquet.scan`, with proven bounds, and DOP853 on the same nodes."""
+    for mean, shape in OSCILLATORS:
+        axes = {"frequency": np.linspace(0.8, 5.0, count), "depth": np.linspace(0.05, 0.6, count // 2)}
+        family = oscillators(mean, shape)
+        scan(family, {"frequency": [1.0, 1.1], "depth": [0.1]})
+        chart, seconds = cpu(lambda axes=axes, family=family: scan(family, axes))
+        each = seconds / chart["verdict"].size
+        points = [{"frequency": f, "depth": d} for f in axes["frequency"][::8] for d in axes["depth"][::8]]
+        _, solver_seconds = cpu(lambda: [monodromy_by_solver(mean, shape, point) for point in points])
+        by_solver_each = solver_seconds / len(points)
+        undecided = int((chart["verdict"] == 0).sum())
+        row(
+            f"scan, {2 * len(mean)} states, {chart['verdict'].size} nodes",
+            f"{each * 1e3:.2f} ms/node",
+            f"{each / by_solver_each:.3f} of DOP853, {by_solver_each * 1e3:.1f} ms/node; bound at most "
+            f"{float(chart['error'].max()):.0e}, {undecided} nodes undecided",
+        )
+
+
 def child(size: int, store: str, **environment: str) -> list[float]:
     """Import time, wall time and peak memory of a chart in a fresh process."""
     run = subprocess.run(
@@ -296,6 +358,7 @@ def main() -> None:
     by_turning(4000)
     on_shafts(arguments.size // 8, 3)
     baselines(per_point, 6)
+    scans(arguments.size // 8)
     processes()
     accuracy(arguments.pairs, arguments.seed)
 
