@@ -7,6 +7,7 @@ from .engine.monodromy import monodromy as monodromy
 from .engine.multipliers import Spectrum as Spectrum
 from .engine.propagators.one_step import Propagator as Propagator
 from .engine.propagators.registry import PROPAGATORS as PROPAGATORS
+from .engine.sampled_nodes import PeriodicSystems as PeriodicSystems
 from .engine.second_order import SecondOrderSystem as SecondOrderSystem
 from .engine.second_order import from_second_order as from_second_order
 from .engine.system import PeriodicSystem as PeriodicSystem

@@ -3,19 +3,29 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 import numpy.typing as npt
 
 from floquet.engine.monodromy import checked_effort
 from floquet.engine.multipliers import VERDICTS, radii_with_bounds, verdicts
-from floquet.engine.nodes import TOGETHER, Family, node_spectra, refuse_other_sizes
+from floquet.engine.nodes import (
+    TOGETHER,
+    TOGETHER_IN_ONE_CALL,
+    BatchedFamily,
+    Family,
+    NodeSpectra,
+    Point,
+    node_spectra,
+    refuse_other_sizes,
+    sampled_spectra,
+)
 from floquet.engine.refinement import gaps
 from floquet.engine.refinement import refine as refined
-from lumped.arguments import real_numbers, some_of
+from lumped.arguments import of_type, real_numbers, some_of
 from lumped.errors import refuse, shown
 from lumped.labelling import Variable, labelled_dataset
 from lumped.typing import BoolArray, ComplexArray, FloatArray, IntArray, Progress
@@ -186,9 +196,10 @@ def refine_planes(
 
 
 def scan(
-    evaluate: Family,
+    evaluate: Family | BatchedFamily,
     axes: Axes,
     *,
+    batched: bool = False,
     labels: Mapping[str, tuple[str, str]] | None = None,
     refine: bool = False,
     rtol: float = 1e-8,
@@ -201,6 +212,8 @@ def scan(
     evaluate : parameters -> `PeriodicSystem`, or its `Spectrum` where that is known otherwise; every point
         must give the same number of multipliers
     axes : name -> values
+    batched : True: ``evaluate`` gets arrays (N,) of each parameter and returns `PeriodicSystems`. This takes
+        some 0.05 ms a node; errors are estimates
     labels : name -> unit, "1" for none, and plain name of an axis
     refine : whether the chart is evaluated near its edges of instability alone and interpolated elsewhere,
         over its first two axes of more than one value; it then has no multipliers
@@ -221,6 +234,7 @@ def scan(
     names = list(grid)
     labels = dict(labels or {})
     some_of("labels", labels, names)
+    of_type("batched", batched, bool, "True or False")
     rtol = checked_effort(rtol, 2)[0]
     shape = tuple(values.size for values in grid.values())
     plane = [name for name, values in grid.items() if values.size > 1][:2]
@@ -229,14 +243,20 @@ def scan(
     points = ChartPoints(math.prod(shape), everything=not refine)
     size: list[int] = []
 
+    def spectra_of(some_points: Sequence[Point]) -> Iterable[NodeSpectra]:
+        if batched:
+            return [sampled_spectra(cast("BatchedFamily", evaluate), some_points, rtol)]
+        return node_spectra(cast("Family", evaluate), some_points, rtol)
+
     def at(places: IntArray) -> None:
-        for first in range(0, places.size, TOGETHER):
-            some_places = places[first : first + TOGETHER]
+        together = TOGETHER_IN_ONE_CALL if batched else TOGETHER
+        for first in range(0, places.size, together):
+            some_places = places[first : first + together]
             nodes = np.transpose(np.unravel_index(some_places, shape)).tolist()
             some_points = [
                 {name: float(grid[name][i]) for name, i in zip(names, node, strict=True)} for node in nodes
             ]
-            for result in node_spectra(evaluate, some_points, rtol):
+            for result in spectra_of(some_points):
                 size.append(result.multipliers.shape[1])
                 refuse_other_sizes(size[0], size[-1], some_points[result.points[0]])
                 points.put(

@@ -16,6 +16,7 @@ from floquet.engine.many_multipliers import quick_multipliers
 from floquet.engine.monodromy import DEAD, checked_effort, monodromy
 from floquet.engine.multipliers import Spectrum, multipliers_with_bounds, radii_with_bounds, verdicts
 from floquet.engine.neutral import on_unit_circle
+from floquet.engine.sampled_nodes import PeriodicSystems, estimated_multipliers
 from floquet.engine.stacked import alike
 from floquet.engine.system import PeriodicSystem
 from lumped.arguments import of_type
@@ -26,8 +27,12 @@ Point = Mapping[str, float]
 """Parameters of a node by name."""
 Family = Callable[[dict[str, float]], Spectrum | PeriodicSystem]
 """Parameters -> the periodic system there, or its multipliers."""
+BatchedFamily = Callable[[dict[str, FloatArray]], PeriodicSystems]
+"""Parameters (N,) -> the periodic systems there."""
 TOGETHER = 256
 """Nodes that are evaluated together: enough that the work for each call counts little."""
+TOGETHER_IN_ONE_CALL = 2048
+"""The same of a batched family."""
 _MAX_SUBSTEPS = 200_000  # of a period, as of `monodromy`
 
 
@@ -75,6 +80,21 @@ def node_spectra(evaluate: Family, points: Sequence[Point], rtol: float) -> Iter
         except NumericalError:  # which of the systems it is, is in the message of the system alone
             for k, (system, _) in zip(node_numbers, members, strict=True):
                 yield _alone(int(k), points[k], system, rtol)
+
+
+def sampled_spectra(
+    evaluate: BatchedFamily, points: Sequence[Point], rtol: float
+) -> NodeSpectra:
+    """Multipliers of all points by one call of a family of `PeriodicSystems`, with estimated errors."""
+    columns = {name: np.array([point[name] for point in points]) for name in points[0]}
+    first, last = place_of(points[0]), place_of(points[-1])
+    try:
+        systems = of_type("evaluate", evaluate(columns), PeriodicSystems, "a function that returns PeriodicSystems")
+        result = estimated_multipliers(systems, len(points), rtol)
+    except NumericalError as failure:
+        raise NumericalError(f"between {first} and {last}: {failure}") from failure
+    nobody = np.zeros(len(points), dtype=bool)
+    return NodeSpectra(np.arange(len(points)), result.multipliers, result.errors, False, nobody)
 
 
 def _at_point(evaluate: Family, point: Point) -> Spectrum | PeriodicSystem:

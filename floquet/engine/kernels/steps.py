@@ -19,62 +19,93 @@ _FLOOR = 1e-300  # covers what underflow may lose
 _BLOCKS = 34  # of the binary counter: enough for 2^32 steps
 
 
+_LANES = 8  # steps side by side, so that one instruction acts on several of them
+
+
 @called
-def _columns_in_use(B: FloatArray, first: IntArray, end: IntArray) -> None:
-    """First and end (powers, n) of the columns of each row of B (powers, n, n) that are not zero."""
-    powers, n, _ = B.shape
+def _load(B: FloatArray, start: int, lanes: FloatArray, first: IntArray, end: IntArray) -> None:
+    """Copy eight steps of B (k, powers, n, n) into lanes (powers, n, n, 8), with zeros after the last step.
+
+    ``first`` and ``end`` (powers, n) enclose the columns of each row that are not zero in all of these steps.
+    """
+    powers, n, _, _ = lanes.shape
     for j in range(powers):
         for i in range(n):
             first[j, i] = n
             end[j, i] = 0
             for p in range(n):
-                if B[j, i, p] != 0.0:
-                    first[j, i] = min(first[j, i], p)
-                    end[j, i] = p + 1
+                for lane in range(_LANES):
+                    entry = 0.0
+                    if start + lane < B.shape[0]:
+                        entry = B[start + lane, j, i, p]
+                    lanes[j, i, p, lane] = entry
+                    if entry != 0.0:
+                        first[j, i] = min(first[j, i], p)
+                        end[j, i] = p + 1
+
+
+@called
+def _next_coefficient(
+    B: FloatArray, first: IntArray, end: IntArray, k: int, X: FloatArray, row: FloatArray
+) -> None:
+    """X[k + 1] = sum_j B_j X[k - j]/(k + 1), of eight steps.
+
+    The product of a row of B_j and X[k - j] is summed first, then the products of all j.
+    """
+    powers, n, _, _ = B.shape
+    for i in range(n):
+        for c in range(n):
+            for lane in range(_LANES):
+                X[k + 1, i, c, lane] = 0.0
+        for j in range(min(k, powers - 1) + 1):
+            if first[j, i] >= end[j, i]:
+                continue
+            for c in range(n):
+                for lane in range(_LANES):
+                    row[lane] = 0.0
+                for p in range(first[j, i], end[j, i]):
+                    for lane in range(_LANES):
+                        row[lane] += B[j, i, p, lane] * X[k - j, p, c, lane]
+                for lane in range(_LANES):
+                    X[k + 1, i, c, lane] += row[lane]
+        for c in range(n):
+            for lane in range(_LANES):
+                X[k + 1, i, c, lane] /= k + 1.0
 
 
 @compiled(nogil=True)
 def taylor_flows(B: FloatArray, terms: IntArray, flows: FloatArray) -> None:
     """Transition matrices (k, n, n) of X' = sum_j B_j s^j X over 0 <= s <= 1, B (k, powers, n, n).
 
-    The coefficients obey (k + 1) X_{k+1} = sum_j B_j X_{k-j}; each step has its number of terms (k,). The
-    product of a row of B_j and X_{k-j} is summed first, then the products of all j; smallest Taylor terms are
-    added first. What is zero in B is left out, which rounds nothing.
+    The coefficients obey (k + 1) X_{k+1} = sum_j B_j X_{k-j}; each step has at least its number of terms (k,).
+    Smallest Taylor terms are added first. What is zero in B is left out, which rounds nothing.
     """
     powers = B.shape[1]
     n = B.shape[2]
-    X = np.empty((terms.max() + 1, n, n))
+    lanes = np.empty((powers, n, n, _LANES))
+    X = np.empty((terms.max() + 1, n, n, _LANES))
     first = np.empty((powers, n), np.int64)
     end = np.empty((powers, n), np.int64)
-    row = np.empty(n)
-    for step in range(B.shape[0]):
-        _columns_in_use(B[step], first, end)
+    row = np.empty(_LANES)
+    for start in range(0, B.shape[0], _LANES):
+        _load(B, start, lanes, first, end)
+        count = min(_LANES, B.shape[0] - start)
+        most = terms[start : start + count].max()
         for i in range(n):
             for c in range(n):
-                X[0, i, c] = 1.0 if i == c else 0.0
-        for k in range(terms[step]):
-            for i in range(n):
-                for c in range(n):
-                    X[k + 1, i, c] = 0.0
-                for j in range(min(k, powers - 1) + 1):
-                    if first[j, i] >= end[j, i]:
-                        continue
-                    for c in range(n):
-                        row[c] = 0.0
-                    for p in range(first[j, i], end[j, i]):
-                        entry = B[step, j, i, p]
-                        for c in range(n):
-                            row[c] += entry * X[k - j, p, c]
-                    for c in range(n):
-                        X[k + 1, i, c] += row[c]
-                for c in range(n):
-                    X[k + 1, i, c] /= k + 1.0
+                for lane in range(_LANES):
+                    X[0, i, c, lane] = 1.0 if i == c else 0.0
+        for k in range(most):
+            _next_coefficient(lanes, first, end, k, X, row)
         for i in range(n):
             for c in range(n):
-                total = X[terms[step], i, c]
-                for k in range(terms[step] - 1, -1, -1):
-                    total += X[k, i, c]
-                flows[step, i, c] = total
+                for lane in range(_LANES):
+                    row[lane] = X[most, i, c, lane]
+                for k in range(most - 1, -1, -1):
+                    for lane in range(_LANES):
+                        row[lane] += X[k, i, c, lane]
+                for lane in range(count):
+                    flows[start + lane, i, c] = row[lane]
 
 
 @called
