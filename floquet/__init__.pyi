@@ -2,6 +2,7 @@ from .engine.chart import scan as scan
 from .engine.coefficients import FourierSeries as FourierSeries
 from .engine.coefficients import PeriodicMatrix as PeriodicMatrix
 from .engine.coefficients import PiecewisePolynomial as PiecewisePolynomial
+from .engine.many_multipliers import FastMultipliers as FastMultipliers
 from .engine.monodromy import Monodromy as Monodromy
 from .engine.monodromy import monodromy as monodromy
 from .engine.multipliers import Spectrum as Spectrum
@@ -38,7 +39,6 @@ from .gear.tongues import predicted_lines as predicted_lines
 from .gear.tongues import stability_boundaries as stability_boundaries
 from .gear.tongues import stability_margins as stability_margins
 from .rank_one.batch import FastMonodromy as FastMonodromy
-from .rank_one.batch import FastMultipliers as FastMultipliers
 from .rank_one.batch import fast_monodromies as fast_monodromies
 from .rank_one.batch import fast_multipliers as fast_multipliers
 from .rank_one.system import Gains as Gains

@@ -159,9 +159,7 @@ class _StepBounds(NamedTuple):
     errors: FloatArray
 
 
-def _step_bounds(
-    a: FloatArray, h: FloatArray, error_of_A: FloatArray, n: int, rtol: float
-) -> _StepBounds:
+def _step_bounds(a: FloatArray, h: FloatArray, error_of_A: FloatArray, n: int, rtol: float) -> _StepBounds:
     """Bounds from a (k, degree + 1), a_j >= |A_j| h, also of the matrix of moduli."""
     powers_over_index = np.arange(1, _DEGREE + 2)
     # h and the products h A_j are rounded.
@@ -179,7 +177,9 @@ def _step_bounds(
         choice = np.where(small.any(axis=1), small.argmax(axis=1), _TERMS.size - 1)
         truncation = truncations[np.arange(len(a)), choice]
         errors = (truncation + rounding + misfit * size**2 * np.exp(misfit)) * _SLACK
-    return _StepBounds(_TERMS[choice], a.sum(axis=1), a[:, -2:].max(axis=1), truncation, rounding, misfit, errors)
+    return _StepBounds(
+        _TERMS[choice], a.sum(axis=1), a[:, -2:].max(axis=1), truncation, rounding, misfit, errors
+    )
 
 
 def _allowed(rounding: FloatArray, rtol: float) -> FloatArray:
@@ -271,9 +271,9 @@ def _products(steps: FloatArray, errors: FloatArray, ends: IntArray) -> tuple[Fl
 
 
 def proven_product(steps: FloatArray, errors: FloatArray) -> tuple[FloatArray, float]:
-    """Product of steps (m, n, n) with the bound of `product_bounds`; ``errors`` (m,) bound those of the steps.
+    """Product of steps (m, n, n) with the bound of `product_bounds`.
 
-    ``errors`` are 2-norms, the bound is a Frobenius norm.
+    ``errors`` (m,) bound those of the steps. They are 2-norms, the bound is a Frobenius norm.
     """
     flows, bounds = _products(steps, errors, np.array([0, len(steps)]))
     return flows[0], float(bounds[0])

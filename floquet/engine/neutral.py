@@ -29,7 +29,7 @@ def hamiltonian(matrices: FloatArray) -> bool:
     if n % 2:
         return False
     JB = skew_form(n // 2) @ matrices  # exact: one product in each sum is not zero
-    return bool((JB == JB.swapaxes(-1, -2)).all())
+    return bool((JB - JB.swapaxes(-1, -2) == 0.0).all())
 
 
 def conservative(mass: FloatArray, damping: FloatArray, stiffness: FloatArray) -> bool:
@@ -69,12 +69,12 @@ def separate_from_mirror_images(values: ComplexArray, errors: FloatArray) -> Boo
 def on_unit_circle(
     matrices: FloatArray, deltas: FloatArray, values: ComplexArray, errors: FloatArray
 ) -> BoolArray:
-    """Whether all multipliers are simple and on the unit circle (k,): PROVEN for symplectic monodromy matrices.
+    """Whether all multipliers are simple and on the unit circle (k,): PROVEN for symplectic matrices.
 
     Two states: det M = 1, so that the multipliers are exp(+-i angle), 2 cos(angle) = tr M, where |tr M| < 2.
     The error of the trace is at most sqrt(2) times the Frobenius norm of the error of M. More states: see
     `separate_from_mirror_images`; with each multiplier its mirror image is a multiplier, and a disk that
-    holds exactly one multiplier and meets no other disk, nor does its mirror image, holds its own mirror image.
+    holds exactly one multiplier and meets no other disk, nor does its mirror image, holds its own image.
 
     Parameters
     ----------

@@ -31,7 +31,7 @@ BatchedFamily = Callable[[dict[str, FloatArray]], PeriodicSystems]
 """Parameters (N,) -> the periodic systems there."""
 TOGETHER = 256
 """Nodes that are evaluated together: enough that the work for each call counts little."""
-TOGETHER_IN_ONE_CALL = 2048
+TOGETHER_IN_ONE_CALL = 512
 """The same of a batched family."""
 _MAX_SUBSTEPS = 200_000  # of a period, as of `monodromy`
 
@@ -82,14 +82,14 @@ def node_spectra(evaluate: Family, points: Sequence[Point], rtol: float) -> Iter
                 yield _alone(int(k), points[k], system, rtol)
 
 
-def sampled_spectra(
-    evaluate: BatchedFamily, points: Sequence[Point], rtol: float
-) -> NodeSpectra:
+def sampled_spectra(evaluate: BatchedFamily, points: Sequence[Point], rtol: float) -> NodeSpectra:
     """Multipliers of all points by one call of a family of `PeriodicSystems`, with estimated errors."""
     columns = {name: np.array([point[name] for point in points]) for name in points[0]}
     first, last = place_of(points[0]), place_of(points[-1])
     try:
-        systems = of_type("evaluate", evaluate(columns), PeriodicSystems, "a function that returns PeriodicSystems")
+        systems = of_type(
+            "evaluate", evaluate(columns), PeriodicSystems, "a function that returns PeriodicSystems"
+        )
         result = estimated_multipliers(systems, len(points), rtol)
     except NumericalError as failure:
         raise NumericalError(f"between {first} and {last}: {failure}") from failure
@@ -137,7 +137,7 @@ def _together(numbers: IntArray, systems: Sequence[Formulas], rtol: float) -> No
 
     def neutral_of(nodes: IntArray) -> BoolArray:
         circle = on_unit_circle(flows.matrices[nodes], flows.bounds[nodes], values[nodes], errors[nodes])
-        return circle & symplectic[nodes]
+        return np.asarray(circle & symplectic[nodes])
 
     neutral = np.zeros(safe.size, dtype=bool)
     quick = np.flatnonzero(safe)

@@ -34,8 +34,8 @@ _POWERS = np.array([
 ])  # fmt: skip
 _TERMS = 24  # of the Taylor series of a step; the rest is below 1e-16 of what a step of 2 rad may be
 _ANGLE = 2.0  # largest |A| h of a step
-_MOST_STEPS = 20_000
-_CHUNK = 4_000_000  # numbers of the coefficients of the steps that are computed together
+_MOST_STEPS = 5_000
+_CHUNK = 500_000  # numbers of the coefficients of the steps that are computed together
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +75,9 @@ class PeriodicSystems:
             allowed = f"real numbers ({count}, {phases.size}, n, n): systems, phases, matrices"
             raise refuse("A", value, allowed, "Check the shape that the callable returns.")
         if not np.isfinite(values).all():
-            raise NumericalError("A is not finite at a phase inside the period. Name its switches as break_phases.")
+            raise NumericalError(
+                "A is not finite at a phase inside the period. Name its switches as break_phases."
+            )
         periods = np.broadcast_to(np.asarray(self.period), (count,))
         return np.asarray(values * periods[:, None, None, None], dtype=float)
 
@@ -90,7 +92,9 @@ def estimated_multipliers(systems: PeriodicSystems, count: int, rtol: float) -> 
     """
     periods = np.asarray(systems.period)
     if periods.size not in (1, count):
-        raise refuse("period", f"{periods.size} numbers", f"one, or one for each of {count} systems", "Match them.")
+        raise refuse(
+            "period", f"{periods.size} numbers", f"one, or one for each of {count} systems", "Match them."
+        )
     edges = np.asarray(systems.break_phases)
     first_look = systems.evaluate(_places(edges), count)
     scaling = _balanced(first_look)

@@ -202,4 +202,6 @@ class _Solution:
         moduli = np.abs(residual).astype(float) + np.abs(B) @ np.abs(self.T).astype(float)
         moduli += 2.0 * self.size @ np.abs(X)
         error = np.abs(self.W @ residual).astype(float) + self.gamma * (self.sizes @ moduli)
-        return X, np.asarray((error + self.g / (1.0 - self.g) * error.max(axis=-2, keepdims=True)) * (1.0 + 1e-9))
+        return X, np.asarray(
+            (error + self.g / (1.0 - self.g) * error.max(axis=-2, keepdims=True)) * (1.0 + 1e-9)
+        )

@@ -116,7 +116,7 @@ def _stack(functions: Sequence[Coefficient]) -> _Functions:
     if len(kinds) == 1 and any(function is not functions[0] for function in functions):
         for kind, maker in makers:
             if isinstance(functions[0], kind):
-                return maker(functions)  # type: ignore[arg-type, no-any-return]
+                return maker(functions)  # type: ignore[arg-type]
     return _OneByOne(functions)
 
 

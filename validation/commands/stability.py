@@ -263,8 +263,8 @@ def floquet(
     """Decide whether M x'' + C(t) x' + K(t) x = 0 is stable, for any matrices with one period.
 
     Prints the Floquet multipliers with proven bounds on their errors; the largest tells by how much a
-    disturbance grows (above 1) or dies (below 1) per period. Without damping, multipliers
-    that are proven to stay on the unit circle are "stable (neutral)". The exit code is 1 when it is not stable.
+    disturbance grows (above 1) or dies (below 1) per period. Without damping, multipliers that are proven to
+    stay on the unit circle are "stable (neutral)". The exit code is 1 when it is not stable.
 
     [bold]Examples[/bold]
     spurcheck floquet rotor.npz

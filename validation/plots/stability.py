@@ -57,9 +57,9 @@ def stability_figure(
 ) -> Figure:
     """Draw how fast disturbances decay over the axes of a chart, with the edges of instability as lines.
 
-    Unstable regions are hatched, undecided nodes dotted, neutral nodes marked with circles. A cross marks a region that is at most two nodes
-    wide: thinner regions may exist beside it. A red dot marks a cell that a proof could not decide. A chart
-    of one axis is drawn as a line.
+    Unstable regions are hatched, undecided nodes dotted, neutral nodes marked with circles. A cross marks a
+    region that is at most two nodes wide: thinner regions may exist beside it. A red dot marks a cell that a
+    proof could not decide. A chart of one axis is drawn as a line.
 
     Parameters
     ----------

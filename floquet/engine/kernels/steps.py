@@ -10,16 +10,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lumped.compiler import called, compiled
+from floquet.engine.kernels.simd import LANES, aligned_empty, load, plus, plus_product, scaled, store, zero
+from lumped.compiler import called, compiled, inlined
 from lumped.typing import FloatArray, IntArray
 
 _U = 1.1102230246251565e-16
 _SLACK = 1.0 + 1e-9  # covers the rounding of the bounds themselves
 _FLOOR = 1e-300  # covers what underflow may lose
 _BLOCKS = 34  # of the binary counter: enough for 2^32 steps
-
-
-_LANES = 8  # steps side by side, so that one instruction acts on several of them
 
 
 @called
@@ -34,7 +32,7 @@ def _load(B: FloatArray, start: int, lanes: FloatArray, first: IntArray, end: In
             first[j, i] = n
             end[j, i] = 0
             for p in range(n):
-                for lane in range(_LANES):
+                for lane in range(LANES):
                     entry = 0.0
                     if start + lane < B.shape[0]:
                         entry = B[start + lane, j, i, p]
@@ -44,10 +42,8 @@ def _load(B: FloatArray, start: int, lanes: FloatArray, first: IntArray, end: In
                         end[j, i] = p + 1
 
 
-@called
-def _next_coefficient(
-    B: FloatArray, first: IntArray, end: IntArray, k: int, X: FloatArray, row: FloatArray
-) -> None:
+@inlined
+def _next_coefficient(B: FloatArray, first: IntArray, end: IntArray, k: int, X: FloatArray) -> None:
     """X[k + 1] = sum_j B_j X[k - j]/(k + 1), of eight steps.
 
     The product of a row of B_j and X[k - j] is summed first, then the products of all j.
@@ -55,55 +51,45 @@ def _next_coefficient(
     powers, n, _, _ = B.shape
     for i in range(n):
         for c in range(n):
-            for lane in range(_LANES):
-                X[k + 1, i, c, lane] = 0.0
-        for j in range(min(k, powers - 1) + 1):
-            if first[j, i] >= end[j, i]:
-                continue
-            for c in range(n):
-                for lane in range(_LANES):
-                    row[lane] = 0.0
+            entry = zero()
+            for j in range(min(k, powers - 1) + 1):
+                row = zero()
                 for p in range(first[j, i], end[j, i]):
-                    for lane in range(_LANES):
-                        row[lane] += B[j, i, p, lane] * X[k - j, p, c, lane]
-                for lane in range(_LANES):
-                    X[k + 1, i, c, lane] += row[lane]
-        for c in range(n):
-            for lane in range(_LANES):
-                X[k + 1, i, c, lane] /= k + 1.0
+                    row = plus_product(load(B, (j, i, p, 0)), load(X, (k - j, p, c, 0)), row)
+                entry = plus(1.0, row, entry)
+            store(X, (k + 1, i, c, 0), scaled(1.0 / (k + 1.0), entry))
 
 
 @compiled(nogil=True)
 def taylor_flows(B: FloatArray, terms: IntArray, flows: FloatArray) -> None:
     """Transition matrices (k, n, n) of X' = sum_j B_j s^j X over 0 <= s <= 1, B (k, powers, n, n).
 
-    The coefficients obey (k + 1) X_{k+1} = sum_j B_j X_{k-j}; each step has at least its number of terms (k,).
-    Smallest Taylor terms are added first. What is zero in B is left out, which rounds nothing.
+    The coefficients obey (k + 1) X_{k+1} = sum_j B_j X_{k-j}; each step has at least its number of terms
+    (k,). Smallest Taylor terms are added first. What is zero in B is left out, which rounds nothing.
     """
     powers = B.shape[1]
     n = B.shape[2]
-    lanes = np.empty((powers, n, n, _LANES))
-    X = np.empty((terms.max() + 1, n, n, _LANES))
+    lanes = aligned_empty(powers * n * n * LANES).reshape((powers, n, n, LANES))
+    X = aligned_empty((terms.max() + 1) * n * n * LANES).reshape((terms.max() + 1, n, n, LANES))
     first = np.empty((powers, n), np.int64)
     end = np.empty((powers, n), np.int64)
-    row = np.empty(_LANES)
-    for start in range(0, B.shape[0], _LANES):
+    row = np.empty(LANES)
+    for start in range(0, B.shape[0], LANES):
         _load(B, start, lanes, first, end)
-        count = min(_LANES, B.shape[0] - start)
+        count = min(LANES, B.shape[0] - start)
         most = terms[start : start + count].max()
         for i in range(n):
             for c in range(n):
-                for lane in range(_LANES):
+                for lane in range(LANES):
                     X[0, i, c, lane] = 1.0 if i == c else 0.0
         for k in range(most):
-            _next_coefficient(lanes, first, end, k, X, row)
+            _next_coefficient(lanes, first, end, k, X)
         for i in range(n):
             for c in range(n):
-                for lane in range(_LANES):
-                    row[lane] = X[most, i, c, lane]
+                entry = load(X, (most, i, c, 0))
                 for k in range(most - 1, -1, -1):
-                    for lane in range(_LANES):
-                        row[lane] += X[k, i, c, lane]
+                    entry = plus(1.0, load(X, (k, i, c, 0)), entry)
+                store(row, (0,), entry)
                 for lane in range(count):
                     flows[start + lane, i, c] = row[lane]
 

@@ -139,7 +139,7 @@ def test_a_hair_of_asymmetry_or_of_damping_takes_the_proof_away() -> None:
 
 @pytest.mark.parametrize(("gyroscopic", "verdict"), [(2.1, "neutral"), (1.9, "unstable")])
 def test_gyroscopic_moments_stabilise_as_the_closed_form_says(gyroscopic: float, verdict: str) -> None:
-    """x'' - x + g y' = 0, y'' - y - g x' = 0 is stable for g > 2 (Thomson and Tait): no energy proves that."""
+    """x'' - x + g y' = 0, y'' - y - g x' = 0 is stable for g > 2 (Thomson and Tait), by no energy."""
     G = np.array([[0.0, gyroscopic], [-gyroscopic, 0.0]])
     result = monodromy(from_second_order(np.eye(2), G, -np.eye(2), 1.3))
     assert result.verdict == verdict
@@ -182,7 +182,7 @@ def quadruple(modulus: float, angle: float) -> np.ndarray:
 
 
 def test_disks_count_with_their_mirror_images() -> None:
-    """Off the circle by 1e-6: radii of 0.4e-6 part the four disks, but each mirror image meets another disk."""
+    """Off the circle by 1e-6: radii of 0.4e-6 part the disks, but each mirror image meets another disk."""
     values = quadruple(1.0 + 1e-6, 0.7)
     for radius in (1e-9, 0.4e-6, 0.9e-6, 1e-2):
         assert not separate_from_mirror_images(values, np.full((1, 4), radius))[0]

@@ -16,9 +16,9 @@ from floquet import (
     scan,
     stability_chart,
 )
+from floquet.engine.many_multipliers import multipliers_of, quick_multipliers
 from floquet.gear.axes import vary
 from floquet.rank_one import batch
-from floquet.engine.many_multipliers import multipliers_of, quick_multipliers
 from floquet.rank_one.system import Gains
 from lumped import load_gear_pair
 from lumped.errors import NumericalError, ParameterError
