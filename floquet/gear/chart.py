@@ -443,7 +443,8 @@ class ChartSlice:
             separate, separate_errors = block.separate.multipliers(T)
             values = np.concatenate([result.multipliers, separate], axis=1)
             errors = np.concatenate([result.errors, separate_errors], axis=1)
-            symplectic = (damping[members] == 0.0) & ~factors[:, : block.levels].any(axis=1)
+            undamped = damping[members] * self.reference.pair.mesh.damping_ratio == 0.0
+            symplectic = undamped & ~factors[:, : block.levels].any(axis=1)
             neutral = stays_bounded(
                 result.multipliers, result.errors, symplectic & block.keeps_energy, block.separate
             )
