@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.special import mathieu_b
 
 from floquet import (
     FourierSeries,
@@ -68,6 +69,22 @@ def test_nodes_together_are_nodes_alone(kind, states, damping) -> None:
             assert (apart.min(axis=1) <= both).all()
             assert abs(node["spectral_radius"] - alone.spectral_radius) <= node["error"] + alone.error
     assert seen <= {"unstable", "stable" if damping else "neutral"}
+
+
+def test_nodes_next_to_an_edge_have_the_verdict_of_the_careful_bound() -> None:
+    """Multipliers that nearly meet: the quick bound does not hold there, |trace| < 2 is proven all the same."""
+    edge = float(mathieu_b(1, 0.7))
+
+    def at(point):
+        wave = FourierSeries(np.pi, 0.0, [1.0])
+        return from_second_order(1.0, 0.0, PeriodicMatrix(edge + point["a"], (wave, -1.4)), np.pi)
+
+    offsets = np.concatenate([-np.geomspace(1e-4, 1e-9, 16), np.geomspace(1e-9, 1e-4, 16)])
+    verdict = scan(at, {"a": offsets}, rtol=1e-10)["verdict"].values
+    assert (verdict[:12] == 2).all()
+    assert (verdict[-12:] == -1).all()
+    numbers = {"unstable": -1, "undecided": 0, "neutral": 2}
+    assert verdict.tolist() == [numbers[monodromy(at({"a": a}), 1e-10).verdict] for a in offsets]
 
 
 def test_a_node_that_fails_in_a_group_is_named(monkeypatch) -> None:

@@ -193,6 +193,9 @@ def test_disks_count_with_their_mirror_images() -> None:
     for other, separate in ((1.9, False), (2.7, True)):
         values, radii = np.array([[0.5, other]], dtype=complex), np.array([[0.1, 1e-3]])
         assert separate_from_mirror_images(values, radii)[0] == separate
+    # The mirror image of 3 +- 0.5 is 0.343 +- 0.057, which does not reach 0.5; 0.343 +- 0.5 would.
+    values, radii = np.array([[3.0, 0.5]], dtype=complex), np.array([[0.5, 0.01]])
+    assert separate_from_mirror_images(values, radii)[0]
     assert not separate_from_mirror_images(np.array([[0.1, 5.0]], dtype=complex), np.array([[0.2, 0.1]]))[0]
 
 

@@ -77,6 +77,9 @@ def test_pieces_may_begin_at_any_time(start: float) -> None:
         times = np.array([0.05, 0.21, 0.55, 0.83])
         assert np.allclose(late.evaluate(times), system(plain, 1.0).evaluate((times - start) % 1.0))
         exact = monodromy(system(plain, count)).multipliers
+        # The same system of M, C and K, whose matrices are brought to the period twice.
+        again = from_second_order(1.0, 0.05, PeriodicMatrix(3.0, (shifted, -1.0)), count)
+        assert np.abs(monodromy(again).multipliers - exact).max() < 1e-9
         assert np.abs(monodromy(late).multipliers - exact).max() < 1e-9
         assert late.edges[-1] == count
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from floquet import GEAR_AXES, gear_pair_multipliers, monodromy, stability_chart
-from floquet.gear.multipliers import gear_pair_system
+from floquet.gear.multipliers import OffLineOfAction, gear_pair_system, stays_bounded
 from lumped import load_gear_pair
 from tests.unlike_pairs import UNLIKE, unlike_pair
 
@@ -76,6 +76,18 @@ def test_bearings_off_the_line_of_action_alone_leave_the_pair_neutral() -> None:
     assert gear_pair_multipliers(one_line, supports="springs").verdict == "neutral"
     both = one_line.with_({LINES["oloa"][1]: 0.02})
     assert gear_pair_multipliers(both, supports="springs").verdict == "stable"
+
+
+def test_what_is_free_off_the_line_of_action_is_not_bounded() -> None:
+    """A mass without a spring has two exponents 0 and drifts; an exponent above 0 grows."""
+    values, none = np.exp(1j * np.array([[0.5, -0.5, 1.4, -1.4]])), np.zeros((1, 4))
+    for exponents, bounded in (
+        ([3j, -3j], True), ([0j, 0j], False), ([0.1 + 3j, 0.1 - 3j], False), ([-0.1 + 3j, -0.1 - 3j], True),
+    ):  # fmt: skip
+        off_line = OffLineOfAction(np.array(exponents), np.full(2, 1e-12))
+        assert stays_bounded(values, none, np.array([True]), off_line)[0] == bounded
+        inside = stays_bounded(0.9 * values, none, np.array([False]), off_line)[0]
+        assert inside == (bounded and exponents[0].real == 0.0)
 
 
 def test_a_chart_says_so_where_damping_and_friction_are_zero() -> None:
