@@ -16,6 +16,9 @@ from floquet import (
     scan,
 )
 from floquet.engine import nodes as module
+from floquet.engine.formula_steps import proven_flows
+from floquet.engine.many_multipliers import quick_multipliers
+from floquet.engine.neutral import separate_from_mirror_images
 from lumped.errors import NumericalError, ParameterError
 from tests.evidence.floquet.reference_systems import mathieu_unstable, meissner_trace
 
@@ -85,6 +88,31 @@ def test_nodes_next_to_an_edge_have_the_verdict_of_the_careful_bound() -> None:
     assert (verdict[-12:] == -1).all()
     numbers = {"unstable": -1, "undecided": 0, "neutral": 2}
     assert verdict.tolist() == [numbers[monodromy(at({"a": a}), 1e-10).verdict] for a in offsets]
+
+
+def test_the_careful_bound_proves_what_the_quick_bound_cannot() -> None:
+    """Four states just outside of the tongue at a sum of frequencies: disks of the quick bound meet."""
+    K, K1 = np.diag([1.0, 3.0]), 0.3 * np.array([[0.0, 1.0], [1.0, 0.0]])
+
+    def at(point):
+        period = 2.0 * np.pi / point["frequency"]
+        stiffness = PeriodicMatrix(K, (FourierSeries(period, 0.0, [1.0]), K1))
+        return from_second_order(np.eye(2), np.zeros((2, 2)), stiffness, period)
+
+    low, high = 1.0 + np.sqrt(3.0), 1.5 + np.sqrt(3.0)
+    for _ in range(50):
+        middle = 0.5 * (low + high)
+        radius = np.abs(np.linalg.eigvals(monodromy(at({"frequency": middle})).matrix)).max()
+        low, high = (middle, high) if radius > 1.0 + 1e-7 else (low, middle)
+    frequencies = low + np.geomspace(1e-14, 1e-10, 17)
+    verdict = scan(at, {"frequency": frequencies}, rtol=1e-8)["verdict"].values
+    alone = [monodromy(at({"frequency": f}), 1e-8).verdict for f in frequencies]
+    assert verdict.tolist() == [{"unstable": -1, "undecided": 0, "neutral": 2}[word] for word in alone]
+    systems = [at({"frequency": f}) for f in frequencies]
+    flows = proven_flows([(system, system.A) for system in systems], 1e-8, 1000)
+    quick = quick_multipliers(flows.matrices, flows.bounds)
+    by_quick_bound = quick.safe & separate_from_mirror_images(quick.values, quick.errors)
+    assert ((verdict == 2) & ~by_quick_bound).any()
 
 
 def test_a_node_that_fails_in_a_group_is_named(monkeypatch) -> None:
