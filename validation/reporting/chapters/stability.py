@@ -61,12 +61,11 @@ def _stability_table(results: Results) -> Table:
     multipliers = results.multipliers
     radius = multipliers.spectral_radius
     error = f"error at most {multipliers.error:.1e}: {multipliers.verdict_words}"
-    cycles = math.inf if multipliers.neutral else np.log(0.5) / np.log(radius)
-    numbers = [
-        NamedNumber("largest Floquet multiplier", radius, "1", error),
-        NamedNumber("a disturbance is halved in", cycles, "1", "mesh cycles"),
-        NamedNumber("mesh damping ratio", results.pair.mesh.damping_ratio, "1"),
-    ]
+    numbers = [NamedNumber("largest Floquet multiplier", radius, "1", error)]
+    if not multipliers.neutral:  # else no disturbance dies out
+        cycles = np.log(0.5) / np.log(radius)
+        numbers.append(NamedNumber("a disturbance is halved in", cycles, "1", "mesh cycles"))
+    numbers.append(NamedNumber("mesh damping ratio", results.pair.mesh.damping_ratio, "1"))
     edge = chart.attrs["nearest_edge_damping_ratio"]
     if not math.isnan(edge):
         numbers.append(NamedNumber("stability changes at", edge, "1", "mesh damping ratio, this speed"))
