@@ -74,8 +74,8 @@ def test_nodes_together_are_nodes_alone(kind, states, damping) -> None:
     assert seen <= {"unstable", "stable" if damping else "neutral"}
 
 
-def test_nodes_next_to_an_edge_have_the_verdict_of_the_careful_bound() -> None:
-    """Multipliers that nearly meet: the quick bound does not hold there, |trace| < 2 is proven all the same."""
+def test_nodes_next_to_an_edge_have_the_verdict_of_single_nodes() -> None:
+    """Two multipliers that nearly meet, on both sides of a characteristic value."""
     edge = float(mathieu_b(1, 0.7))
 
     def at(point):
