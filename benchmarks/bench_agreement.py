@@ -89,8 +89,8 @@ def effects() -> None:
     """The same as given, and how much it changes without each effect of the exact model."""
     line("pair", "as given", *EFFECTS)
     for name, pair in PAIRS.items():
-        given = apart(pair)
-        line(name, given, *(apart(pair, effect) - given for effect in EFFECTS))
+        as_given = apart(pair)
+        line(name, as_given, *(apart(pair, effect) - as_given for effect in EFFECTS))
 
 
 def presets() -> None:
@@ -100,8 +100,8 @@ def presets() -> None:
     for name in PRESETS:
         pair = PAIRS[name].with_(mesh__relief="ignored")
         check = crosscheck(pair, cycles=6, fidelities=("exact",))
-        found = {one.quantity: 100.0 * one.difference for one in check.of("exact")}
-        line(name, *(found[quantity] for quantity in shown))
+        differences = {one.quantity: 100.0 * one.difference for one in check.of("exact")}
+        line(name, *(differences[quantity] for quantity in shown))
     pair = ENERGY.with_(mesh__relief="ignored", friction__law="coulomb")
     causes = multibody.attribution(pair)["alone"].sel(quantity="dte")
     print("28/28, energy, law I, share of each cause:", causes.to_series().to_dict())
@@ -113,12 +113,12 @@ def scales() -> None:
     cases = {"19/41, 300 rpm, no friction": PAIRS["19/41"].with_(slow)}
     line("pair", "quantity", "swing, um or N", "difference", "of the means")
     for name, pair in (cases | {teeth: PAIRS[teeth] for teeth in ("19/41", "31/57")}).items():
-        own = predicted(pair).cycle
+        prediction = predicted(pair).cycle
         exact = exact_motion(pair)
         for one in ("dte", "x_g", "bearing_force_y_g", "friction_force"):
             mine, other = (
                 (run[one].sum("pair") if "pair" in run[one].dims else run[one]).to_numpy()
-                for run in (own, exact)
+                for run in (prediction, exact)
             )
             if (swing := float(np.ptp(mine))) == 0.0:
                 continue

@@ -18,7 +18,7 @@ from scipy import ndimage
 
 from floquet import stability_chart
 from floquet.engine.multipliers import radii_with_bounds, verdicts
-from floquet.engine.refinement import gaps, refine
+from floquet.engine.refinement import NodeValues, gaps, refine
 from floquet.gear.axes import speed_range
 from lumped import load_gear_pair, preset_names
 from lumped.errors import ParameterError, SpurcheckError
@@ -164,24 +164,28 @@ def at_random(count: int, seed: int, *, damping: bool) -> None:
             if "damping_ratio" in axes and not damping:
                 continue
             got, seconds = cpu(lambda pair=pair, axes=axes: stability_chart(pair, axes, rtol=1e-9))
-            full, whole = cpu(
+            full, full_seconds = cpu(
                 lambda pair=pair, axes=axes: stability_chart(pair, axes, rtol=1e-9, refine=False)
             )
         except (SpurcheckError, ParameterError):  # what cannot exist, as a law outside its formula
             continue
-        known = got.known.values
-        rows.append((*compared(got, full), known.mean(), got.proven.values[known].mean(), seconds, whole))
-        if rows[-1][1] or rows[-1][2]:
-            print(f"{rows[-1][:3]} of {pair.name}, {pair.friction.law}, over {list(axes)[1]}", flush=True)
-    numbers = np.array(rows)
-    total = numbers.sum(axis=0)
-    shares = numbers[:, 3]
+        is_known = got.known.values
+        rows.append(
+            (*compared(got, full), is_known.mean(), got.proven.values[is_known].mean(), seconds, full_seconds)
+        )
+        regions, lost, wrong, *_ = rows[-1]
+        if lost or wrong:
+            print(
+                f"{(regions, lost, wrong)} of {pair.name}, {pair.friction.law}, over {list(axes)[1]}",
+                flush=True,
+            )
+    regions, lost, wrong, shares, proven, seconds, full_seconds = np.array(rows).T
     print(
         f"{count} random pairs and axes{'' if damping else ' other than damping'}: "
-        f"{total[0]:.0f} regions, {total[1]:.0f} lost, "
-        f"{total[2]:.0f} wrong verdicts; evaluated {shares.min():.1%} to {shares.max():.1%}, "
-        f"median {np.median(shares):.1%}; all evaluated nodes proven in {np.mean(numbers[:, 4] == 1.0):.0%} "
-        f"of the charts; {total[5]:.0f} s against {total[6]:.0f} s"
+        f"{regions.sum():.0f} regions, {lost.sum():.0f} lost, "
+        f"{wrong.sum():.0f} wrong verdicts; evaluated {shares.min():.1%} to {shares.max():.1%}, "
+        f"median {np.median(shares):.1%}; all evaluated nodes proven in {np.mean(proven == 1.0):.0%} "
+        f"of the charts; {seconds.sum():.0f} s against {full_seconds.sum():.0f} s"
     )
 
 
@@ -190,11 +194,11 @@ def closed_forms(n: int) -> None:
     a = np.linspace(0.5, 42.0, n)
     q = np.linspace(0.0, 12.0, n)
 
-    def ask(flat: Any) -> Any:
-        i, j = np.unravel_index(flat, (n, n))
+    def ask(flat_index: Any) -> Any:
+        i, j = np.unravel_index(flat_index, (n, n))
         values, errors = mathieu_many(a[i], q[j])
         radius, error = radii_with_bounds(values, errors)
-        return radius, verdicts(radius, error).astype(np.intp), gaps(values)
+        return NodeValues(radius, verdicts(radius, error), gaps(values))
 
     got, seconds = cpu(lambda: refine((n, n), np.ones(n), ask, rows=(0, n // 2, -1)))
     wrong = thin = 0
@@ -202,9 +206,11 @@ def closed_forms(n: int) -> None:
         unstable, edges = mathieu_unstable(a, float(q[j]))
         width = np.diff(edges, prepend=-np.inf, append=np.inf)[np.searchsorted(edges, a)]
         narrow = unstable & (width <= 2.0 * (a[1] - a[0]))
-        off = ((got.verdict[:, j] < 0) != unstable) & (np.abs(a[:, None] - edges).min(axis=1) > 1e-6)
-        wrong = wrong + int((off & ~narrow).sum())
-        thin = thin + int((off & narrow).sum())
+        wrong_verdict = ((got.verdict[:, j] < 0) != unstable) & (
+            np.abs(a[:, None] - edges).min(axis=1) > 1e-6
+        )
+        wrong = wrong + int((wrong_verdict & ~narrow).sum())
+        thin = thin + int((wrong_verdict & narrow).sum())
     share = f"{got.known.mean():.2%} evaluated, {seconds:.1f} s"
     print(f"Mathieu {n} x {n}: {share}, {wrong} wrong verdicts, {thin} in thin parts")
     delta = np.linspace(0.5, 9.0, n)
@@ -217,20 +223,20 @@ def closed_forms(n: int) -> None:
         p2 = np.pi * w2
         return 2.0 * np.cos(p1) * np.cos(p2) - (w1 / w2 + w2 / w1) * np.sin(p1) * np.sin(p2)
 
-    def meissner(flat: Any) -> Any:
-        i, j = np.unravel_index(flat, (n, n))
+    def meissner(flat_index: Any) -> Any:
+        i, j = np.unravel_index(flat_index, (n, n))
         half = 0.5 * np.abs(trace(delta[i], epsilon[j]))
         radius = np.where(half > 1.0, half + np.sqrt(np.maximum(half**2 - 1.0, 0.0)), 1.0)
         angle = np.arccos(np.clip(0.5 * trace(delta[i], epsilon[j]), -1.0, 1.0))
         values = np.exp(1j * np.stack([angle, -angle], axis=1)) * np.stack([radius, 1.0 / radius], axis=1)
-        return radius, verdicts(radius, np.full(radius.size, 1e-9)).astype(np.intp), gaps(values)
+        return NodeValues(radius, verdicts(radius, np.full(radius.size, 1e-9)), gaps(values))
 
     assert abs(trace(3.0, 0.2) - meissner_trace(3.0, 0.2)) < 1e-12
     got, seconds = cpu(lambda: refine((n, n), np.ones(n), meissner, rows=(0, n // 2, -1)))
     exact = np.abs(trace(delta[:, None], epsilon))
-    off = ((got.verdict < 0) != (exact > 2.0)) & (np.abs(exact - 2.0) > 1e-8)
+    wrong_verdict = ((got.verdict < 0) != (exact > 2.0)) & (np.abs(exact - 2.0) > 1e-8)
     share = f"{got.known.mean():.2%} evaluated, {seconds:.1f} s"
-    print(f"Meissner {n} x {n}: {share}, {int(off.sum())} wrong verdicts")
+    print(f"Meissner {n} x {n}: {share}, {int(wrong_verdict.sum())} wrong verdicts")
 
 
 if __name__ == "__main__":

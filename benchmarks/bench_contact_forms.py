@@ -24,9 +24,9 @@ from validation.cross_check.motions import unilateral_orbit
 from validation.prediction.motion import predicted
 
 
-def off(own: xr.Dataset, exact: xr.Dataset, name: str = "dte") -> float:
+def off(motion: xr.Dataset, exact: xr.Dataset, name: str = "dte") -> float:
     """Largest difference from the exact motion over the peak to peak of the compared one [%]."""
-    values = own[name].to_numpy()
+    values = motion[name].to_numpy()
     return float(100.0 * np.abs(values - exact[name].to_numpy()).max() / np.ptp(values))
 
 
@@ -57,8 +57,10 @@ def speeds() -> None:
         pairs = [ENERGY.with_(mesh__relief=relief, operating__pinion_speed=one) for one in rpm]
         exact = [exact_motion(pair) for pair in pairs]
         for form in ("prescribed", "loaded"):
-            own = [lumped.steady_state(p.with_(mesh__contact=form), samples_per_cycle=SAMPLES) for p in pairs]
-            shares = [f"{0.01 * off(*both):.3f}" for both in zip(own, exact, strict=True)]
+            of_form = [
+                lumped.steady_state(p.with_(mesh__contact=form), samples_per_cycle=SAMPLES) for p in pairs
+            ]
+            shares = [f"{0.01 * off(*both):.3f}" for both in zip(of_form, exact, strict=True)]
             line(f"{relief}, {form}", *shares)
 
 
@@ -68,10 +70,11 @@ def losses() -> None:
     line("", *rpm)
     plain = PAIRS["28/28"].with_(mesh__contact="prescribed", mesh__relief="ignored")
     systems = [periodic_system(plain.with_(operating__pinion_speed=one), "full") for one in rpm]
-    found = [mean_powers(periodic_solution(one, np.zeros(1), estimate_error=False)) for one in systems]
+    powers = [mean_powers(periodic_solution(one, np.zeros(1), estimate_error=False)) for one in systems]
     for name in ("sliding", "tooth_dampers", "bearings", "energy_residual"):
-        line(name, *(f"{100.0 * getattr(one, name) / one.driving:.3f}" for one in found))
-    print(f"at 8000 rpm {found[3].energy_residual:.0f} W of {1e-3 * found[3].driving:.1f} kW")
+        line(name, *(f"{100.0 * getattr(one, name) / one.driving:.3f}" for one in powers))
+    at_8000_rpm = powers[3]
+    print(f"at 8000 rpm {at_8000_rpm.energy_residual:.0f} W of {1e-3 * at_8000_rpm.driving:.1f} kW")
 
 
 def beyond() -> None:
@@ -87,8 +90,8 @@ def beyond() -> None:
     line("pair", "same equations", "dte", "y_p")
     for name, pair in cases.items():
         check = crosscheck(pair, cycles=6, variant=False)
-        found = {one.quantity: f"{100.0 * one.difference:.2g}" for one in check.of("exact")}
-        line(name, f"{check.worst('linear').difference:.0e}", found["dte"], found["y_p"])
+        differences = {one.quantity: f"{100.0 * one.difference:.2g}" for one in check.of("exact")}
+        line(name, f"{check.worst('linear').difference:.0e}", differences["dte"], differences["y_p"])
 
 
 def main(names: Sequence[str]) -> None:

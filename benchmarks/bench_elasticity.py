@@ -58,12 +58,12 @@ def solved_again():
 
 def seconds(call: Callable[[], object]) -> float:
     """Median of the processor time of some calls."""
-    found = []
+    durations = []
     for _ in range(RUNS):
         start = time.process_time()
         call()
-        found.append(time.process_time() - start)
-    return statistics.median(found)
+        durations.append(time.process_time() - start)
+    return statistics.median(durations)
 
 
 def solve(pair: GearPair) -> None:
@@ -95,11 +95,15 @@ def main(count: int) -> None:
     for teeth, *drawing, changes in DRAWN[:count]:
         pair = new_pair(teeth, *drawing, changes=changes)
         dense = baseline()
-        own = seconds(lambda pair=pair: solve(pair))
-        found, half, third = (mesh_stiffness(pair, FINE / n) for n in (1, 2, 3))
-        error, rest = (float(np.abs(k / third - 1.0).max()) for k in (found, half))
+        solve_seconds = seconds(lambda pair=pair: solve(pair))
+        fine, half, third = (mesh_stiffness(pair, FINE / n) for n in (1, 2, 3))
+        error, rest = (float(np.abs(k / third - 1.0).max()) for k in (fine, half))
         ratio = f"{pair.geometry.contact_ratio:.2f}"
-        print(f"| {teeth} | {ratio} | {own:.2f} | {own / dense:.0f} | {error:.1e} | {rest:.0e} |", flush=True)
+        print(
+            f"| {teeth} | {ratio} | {solve_seconds:.2f} | {solve_seconds / dense:.0f} | {error:.1e} "
+            f"| {rest:.0e} |",
+            flush=True,
+        )
 
 
 if __name__ == "__main__":

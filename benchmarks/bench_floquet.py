@@ -131,9 +131,9 @@ def by_turning(points: int) -> None:
     """Cost of the direct route over omega_max T_m."""
     block = gear_block(PAIR, rtol=1e-10)
     omega = float(block.modal().omega.max())
-    own = PAIR.operating.pinion_speed * 30 / np.pi
+    operating_rpm = PAIR.operating.pinion_speed * 30 / np.pi
     for rpm in (500, 1000, 2000, 5000, 10000, 20000):
-        T = np.full(points, block.period * own / rpm)
+        T = np.full(points, block.period * operating_rpm / rpm)
         _, seconds = cpu(lambda T=T: fast_multipliers(block, T, tolerance=2e-11))
         row(
             f"direct at {rpm} rpm, omega_max T_m = {omega * T[0]:.0f} rad",
@@ -165,10 +165,10 @@ def by_solver(
 
         def rates(t: float, y: np.ndarray, a: float = a, b: float = b, A: np.ndarray = A) -> np.ndarray:
             u = (2.0 * t - a - b) / (b - a)
-            now = A[-1]
+            polynomial = A[-1]
             for j in range(len(A) - 2, -1, -1):
-                now = now * u + A[j]
-            return (now @ y.reshape(2 * m, -1)).ravel()
+                polynomial = polynomial * u + A[j]
+            return (polynomial @ y.reshape(2 * m, -1)).ravel()
 
         starts = list(M.T) if by_column else [M.ravel()]
         ends = [
@@ -195,11 +195,11 @@ def baselines(per_point: float, points: int) -> None:
     ]
     row(f"direct chart at these {points} speeds", "", f"worst error {worst(ours):.0e}")
     for title, name, rtol, by_column in SOLVERS:
-        found, seconds = cpu(lambda n=name, r=rtol, c=by_column: [by_solver(p, n, r, c) for p in pairs])
+        monodromies, seconds = cpu(lambda n=name, r=rtol, c=by_column: [by_solver(p, n, r, c) for p in pairs])
         row(
             f"{title}, rtol {rtol:.0e}",
             f"{points / seconds:.1f} points/s per core",
-            f"worst error {worst([np.linalg.eigvals(M) for M in found]):.0e}; the direct chart is "
+            f"worst error {worst([np.linalg.eigvals(M) for M in monodromies]):.0e}; the direct chart is "
             f"{seconds / points / per_point:.0f} times as fast per core",
         )
 
@@ -224,11 +224,11 @@ def on_shafts(size: int, points: int) -> None:
     )
     speeds = axes["speed_rpm"][size // (2 * points) :: size // points][:points]
     pairs = [pair.with_(operating__pinion_speed=float(rpm)) for rpm in speeds]
-    found, seconds = cpu(lambda: [by_solver(p, "DOP853", 1e-9, False, "shafts") for p in pairs])
+    monodromies, seconds = cpu(lambda: [by_solver(p, "DOP853", 1e-9, False, "shafts") for p in pairs])
     ours = [fast_multipliers(gear_block(p, supports="shafts")).multipliers[0] for p in pairs]
     worst = max(
         float(np.abs(a[:, None] - np.linalg.eigvals(M)).min(axis=1).max())
-        for a, M in zip(ours, found, strict=True)
+        for a, M in zip(ours, monodromies, strict=True)
     )
     row(
         f"DOP853 on the matrix of {modes} modes, rtol 1e-09",
@@ -334,7 +334,7 @@ def processes() -> None:
                 f"{took:.2f} s",
                 f"import of floquet {imported:.2f} s, wall",
             )
-    base = child(2, "all")[2]
+    _, _, base = child(2, "all")
     for store in ("radius", "all"):
         _, took, memory = child(1000, store)
         row(

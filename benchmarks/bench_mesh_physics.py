@@ -34,21 +34,28 @@ def pair():
     )
 
 
+#: Number of the position at which the compiled compliance is compared with quadrature.
+CHECKED = 7
+
+
 def plain_compliance(pair, g, xi):
     """Bending, shear and compression of both teeth at one position, each by adaptive quadrature [m/N]."""
     total = 0.0
-    for which, gear, length in (("pinion", pair.pinion, xi), ("gear", pair.gear, g.L_XY - xi)):
-        profile = pair.wheels[0 if which == "pinion" else 1].tooth
+    for gear_name, gear, length in (("pinion", pair.pinion, xi), ("gear", pair.gear, g.L_XY - xi)):
+        profile = pair.wheels[0 if gear_name == "pinion" else 1].tooth
         u_c, h_c, _, a = (float(v[0]) for v in profile.involute_points(np.array([length])))
         modulus = gear.youngs_modulus
         cosine = np.cos(a)
         sine = np.sin(a)
         shear_modulus = modulus / (2.0 * (1.0 + gear.poisson_ratio))
 
-        def strain(u, h, slope, at=(u_c, h_c, cosine, sine), moduli=(modulus, shear_modulus)):
-            arm = at[2] * (at[0] - u) - at[3] * at[1]
+        def strain(u, h, slope, load=(u_c, h_c, cosine, sine), moduli=(modulus, shear_modulus)):
+            u_load, h_load, across, along = load
+            arm = across * (u_load - u) - along * h_load
             bending = 1.5 * arm**2 / h**3 / moduli[0]
-            return (bending + 0.6 * at[2] ** 2 / h / moduli[1] + 0.5 * at[3] ** 2 / h / moduli[0]) * slope
+            shear = 0.6 * across**2 / h / moduli[1]
+            axial = 0.5 * along**2 / h / moduli[0]
+            return (bending + shear + axial) * slope
 
         def fillet(s, profile=profile, strain=strain):
             u, h, slope = (float(v[0]) for v in profile.fillet_points(np.array([s])))
@@ -70,13 +77,15 @@ def positions(g):
 @pytest.mark.benchmark(group="teeth at 65 positions")
 def test_gauss_on_all_positions(benchmark, pair):
     g = lumped.geometry(pair)
-    found = benchmark(lambda: pair_compliance(pair, positions(g), hertz="linear"))
+    compliance = benchmark(lambda: pair_compliance(pair, positions(g), hertz="linear"))
     moduli = (pair.pinion.youngs_modulus, pair.gear.youngs_modulus)
     ratios = (pair.pinion.poisson_ratio, pair.gear.poisson_ratio)
     hertz = linear_hertz_compliance(moduli, ratios) / g.face_width
-    plain = plain_compliance(pair, g, positions(g)[7])
-    bodies = found.pinion.foundation + found.gear.foundation + hertz
-    assert 1 / found.stiffness[7] == pytest.approx(plain + bodies[7], rel=1e-8)  # quad at 1e-10 a piece
+    plain = plain_compliance(pair, g, positions(g)[CHECKED])
+    bodies = compliance.pinion.foundation + compliance.gear.foundation + hertz
+    assert 1 / compliance.stiffness[CHECKED] == pytest.approx(
+        plain + bodies[CHECKED], rel=1e-8
+    )  # quad at 1e-10 a piece
 
 
 @pytest.mark.benchmark(group="teeth at 65 positions")
@@ -98,9 +107,9 @@ def test_path_function_of_one_pair(benchmark, pair, hertz):
 @pytest.mark.benchmark(group="100 static transmission error curves, 256 positions each")
 def test_hundred_curves_at_once(benchmark, pair):
     torques = np.linspace(1.0, 120.0, CURVES)
-    found = benchmark(lambda: static_transmission_error(pair, torques, extended=False))
+    errors = benchmark(lambda: static_transmission_error(pair, torques, extended=False))
     plain = one_by_one(pair, torques[[3, 77]])
-    np.testing.assert_allclose(found["transmission_error"].values[[3, 77]], plain, rtol=1e-9)
+    np.testing.assert_allclose(errors["transmission_error"].values[[3, 77]], plain, rtol=1e-9)
     assert benchmark.stats.stats.min < 1.0  # asked for: a second
 
 
@@ -133,8 +142,8 @@ def test_baseline_brentq_per_position(benchmark, pair):
 
 @pytest.mark.benchmark(group="whole answers")
 def test_relief_optimum(benchmark, pair):
-    found = benchmark.pedantic(lambda: optimal_relief(pair), rounds=3, iterations=1, warmup_rounds=1)
-    assert found.peak_to_peak < found.unmodified
+    relief = benchmark.pedantic(lambda: optimal_relief(pair), rounds=3, iterations=1, warmup_rounds=1)
+    assert relief.peak_to_peak < relief.unmodified
 
 
 @pytest.mark.benchmark(group="whole answers")
@@ -144,8 +153,8 @@ def test_losses_quasi_static(benchmark, pair):
 
 @pytest.mark.benchmark(group="whole answers")
 def test_losses_of_all_laws_with_periodic_motion(benchmark, pair):
-    found = benchmark.pedantic(lambda: losses_of_laws(pair), rounds=3, iterations=1, warmup_rounds=1)
-    assert found.sizes["law"] == 5
+    losses = benchmark.pedantic(lambda: losses_of_laws(pair), rounds=3, iterations=1, warmup_rounds=1)
+    assert losses.sizes["law"] == 5
 
 
 @pytest.mark.benchmark(group="periodic motion, 128 times: prescribed contact is the baseline")
@@ -166,9 +175,9 @@ def test_speed_sweep(capsys, name, stiffness):
     for _ in range(11):
         for form, one in forms.items():
             start = time.process_time()
-            found = lumped.speed_sweep(one, speeds)
+            sweep = lumped.speed_sweep(one, speeds)
             taken[form].append(time.process_time() - start)
-            assert bool(found["periodic"].all())
+            assert bool(sweep["periodic"].all())
     ratio = np.median(np.divide(taken["loaded"][1:], taken["prescribed"][1:]))
     each = min(taken["prescribed"]) / speeds.size * 1e3
     with capsys.disabled():

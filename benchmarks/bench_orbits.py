@@ -47,17 +47,17 @@ def settled(count: int) -> None:
 def points() -> None:
     """Bifurcations of the 28/28 pair with prescribed contact, and what removes its last jump."""
     plain, relieved = (pair.with_(mesh__contact="prescribed") for pair in (PLAIN, PAIR))
-    found = floquet.response_branches(plain, SPEEDS, (1, 2, 3))
-    for one in sorted(found.bifurcations, key=lambda one: (one.n, one.speed_rpm)):
+    response = floquet.response_branches(plain, SPEEDS, (1, 2, 3))
+    for one in sorted(response.bifurcations, key=lambda one: (one.n, one.speed_rpm)):
         if one.sharp and one.kind != "grazing":
             print(f"n = {one.n}, {one.kind}: {one.speed_rpm:.3f} rpm, rms {1e6 * one.dte_rms:.3f} um")
     struck = floquet.response_branches(plain, SPEEDS, [1], back_side=True)
     ends = sorted((one.speed_rpm, one.kind) for one in struck.bifurcations if one.sharp)
     print("with back sides:", ", ".join(f"{kind} {rpm:.0f} rpm" for rpm, kind in ends))
-    print("no stable motion:", ", ".join(f"{low:.0f} to {high:.0f} rpm" for low, high in found.gaps))
+    print("no stable motion:", ", ".join(f"{low:.0f} to {high:.0f} rpm" for low, high in response.gaps))
     changed = relieved.with_(operating__pinion_torque=200.0)
     with_relief = floquet.response_branches(changed, SPEEDS, (1, 2), seeds=0)
-    for branches, names in ((found, ["damping_ratio"]), (with_relief, ["tip_relief", "torque"])):
+    for branches, names in ((response, ["damping_ratio"]), (with_relief, ["tip_relief", "torque"])):
         for name in names:
             for end in floquet.jumps_removed_by(branches, name):
                 print(f"no jump beyond {name} {end.value:.4f}, at {end.speed_rpm:.0f} rpm")
@@ -67,10 +67,10 @@ def attractors() -> None:
     """What does not repeat, of the 19/41 pair; of the longest one every point."""
     changes = {"mesh.stiffness": {"model": "rectangular"}, "mesh.damping_ratio": 0.04, "friction.law": "none"}
     pair = new_pair("19/41", 2.5, 20.0, 1450.0, 80.0, changes | {"mesh.contact": "prescribed"})
-    found = floquet.response_branches(pair, (12_000.0, 48_000.0)).attractors
-    for one in found:
+    attractors_of_pair = floquet.response_branches(pair, (12_000.0, 48_000.0)).attractors
+    for one in attractors_of_pair:
         print(f"19/41, {one.kind}: {one.low_rpm:.1f} to {one.high_rpm:.1f} rpm")
-    for point in max(found, key=lambda one: one.high_rpm - one.low_rpm).points:
+    for point in max(attractors_of_pair, key=lambda one: one.high_rpm - one.low_rpm).points:
         error = f"{point.exponent:.3f} +- {point.uncertainty:.3f}"
         print(
             f"  {point.speed_rpm:.0f} rpm, {point.kind}: rms {1e6 * point.dte_rms:.1f} um, exponent {error}"
@@ -90,8 +90,8 @@ def main() -> None:
         attractors()
         return
     floquet.response_branches(PLAIN, (8000.0, 8500.0), [1], seeds=0)  # compiles
-    found, took = cpu(lambda: floquet.response_branches(PLAIN, SPEEDS, [1], seeds=0))
-    orbits = sum(len(branch.orbits) for branch in found.branches)
+    response, took = cpu(lambda: floquet.response_branches(PLAIN, SPEEDS, [1], seeds=0))
+    orbits = sum(len(branch.orbits) for branch in response.branches)
     _, baseline = cpu(lambda: settled(orbits // 20))
     baseline *= 20.0
     print(

@@ -34,9 +34,9 @@ FASTEST = 40.0  # at the reference circle, m/s
 def drawn(count: int, seed: int) -> Iterator[tuple[str, GearPair]]:
     """Kind and pair; pairs that cannot exist are drawn again."""
     rng = np.random.default_rng(seed)
-    found = 0
-    while found < count:
-        kind = KINDS[found * len(KINDS) // count]
+    drawn_count = 0
+    while drawn_count < count:
+        kind = KINDS[drawn_count * len(KINDS) // count]
         z1 = int(rng.integers(15, 41))
         z2 = round(z1 * rng.uniform(1, 4))
         m = float(rng.choice(MODULES))
@@ -51,20 +51,20 @@ def drawn(count: int, seed: int) -> Iterator[tuple[str, GearPair]]:
             pair = pair.with_(CHANGES[kind](pair, rng))
         except ParameterError:
             continue
-        found += 1
+        drawn_count += 1
         yield kind, pair
 
 
 def shafts(pair: GearPair, rng: np.random.Generator) -> dict[str, Any]:
     """Each gear in the middle of a shaft of half its reference diameter, or so, in two bearings."""
     length = float(round(rng.uniform(2, 5) * 1e3 * pair.pinion.face_width + 60))
-    given: dict[str, Any] = {"damping_ratio": 0.03}
+    changes: dict[str, Any] = {"damping_ratio": 0.03}
     for name, gear in (("pinion", pair.pinion), ("gear", pair.gear)):
         size = 1e3 * pair.basic_rack.module * gear.teeth
         half = {"length": length / 2, "diameter": float(round(max(10.0, size * rng.uniform(0.35, 0.55))))}
         ends = ({"position": z, "loa_stiffness": 2e8, "oloa_stiffness": 2e8} for z in (10.0, length - 10.0))
-        given[name] = {"gear_position": length / 2, "segments": [half, half], "bearings": list(ends)}
-    return {"shafts": given}
+        changes[name] = {"gear_position": length / 2, "segments": [half, half], "bearings": list(ends)}
+    return {"shafts": changes}
 
 
 def shifts(pair: GearPair, rng: np.random.Generator) -> dict[str, Any]:
@@ -100,8 +100,8 @@ def cause(check: CrossCheck) -> tuple[str, str]:
     text = cause_of_difference(check)
     if text.startswith("No effect"):
         return "where teeth touch", ""
-    left = re.search(r"differs by (.*?)\.(?: |$)", text)
-    return "free shafts" if "free shafts" in text else "friction", left[1] if left else ""
+    remainder = re.search(r"differs by (.*?)\.(?: |$)", text)
+    return "free shafts" if "free shafts" in text else "friction", remainder[1] if remainder else ""
 
 
 def main() -> None:
@@ -109,15 +109,15 @@ def main() -> None:
     parser.add_argument("--pairs", type=int, default=110)
     parser.add_argument("--seed", type=int, default=9)
     parser.add_argument("--write", type=Path)
-    given = parser.parse_args()
+    arguments = parser.parse_args()
     warnings.simplefilter("ignore")
     verdicts: Counter[str] = Counter()
     print("| pair | kind | m, mm | rpm | N m | quantity | %, limit | effect | without it | half torque, % |")
     print("|---|---|---|---|---|---|---|---|---|---|")
-    for number, (kind, pair) in enumerate(drawn(given.pairs, given.seed)):
-        if given.write is not None:
-            given.write.mkdir(parents=True, exist_ok=True)
-            (given.write / f"p{number:03d}.toml").write_text(parameter_text(pair.to_mapping()))
+    for number, (kind, pair) in enumerate(drawn(arguments.pairs, arguments.seed)):
+        if arguments.write is not None:
+            arguments.write.mkdir(parents=True, exist_ok=True)
+            (arguments.write / f"p{number:03d}.toml").write_text(parameter_text(pair.to_mapping()))
             continue
         try:
             check = compared(pair)
@@ -131,11 +131,11 @@ def main() -> None:
             torque = pair.operating.pinion_torque
             word += f": {why}"
             half = compared(pair.with_(operating__pinion_torque=0.5 * torque)).of("exact")
-            left = next(a.difference for a in half if a.quantity == worst.quantity)
+            remaining = next(a.difference for a in half if a.quantity == worst.quantity)
             rpm = pair.operating.pinion_speed * 30.0 / math.pi
             cells = f"{pair.pinion.teeth}/{pair.gear.teeth} | {kind} | {1e3 * pair.basic_rack.module:g} | "
             cells += f"{rpm:.0f} | {torque:g} | {worst.quantity} | {100 * worst.difference:.3g}, "
-            cells += f"{100 * worst.limit:g} | {why} | {without} | {100 * left:.3g}"
+            cells += f"{100 * worst.limit:g} | {why} | {without} | {100 * remaining:.3g}"
             print(f"| {cells} |", flush=True)
         verdicts[word] += 1
     print(", ".join(f"{count} {word}" for word, count in sorted(verdicts.items())))

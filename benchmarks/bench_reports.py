@@ -105,12 +105,12 @@ def timed(pair: GearPair, *, quick: bool) -> str:
         used = time.process_time() - started
     results = results_of_report[0]
     search = results.jump_search
-    found = results.uncertainty
-    left = f"{sum(b - a for a, b in search.open):.0f} rpm" if search.open else ""
+    ranges = results.uncertainty
+    open_range = f"{sum(b - a for a, b in search.open):.0f} rpm" if search.open else ""
     samples = ""
-    if not isinstance(found, Absent):
-        samples = f"{found.attrs['taken']} of {found.attrs['asked']}"
-    apart = f"{search.seconds:.1f} | {left} | {seconds['uncertain inputs']:.1f} | {samples}"
+    if not isinstance(ranges, Absent):
+        samples = f"{ranges.attrs['taken']} of {ranges.attrs['asked']}"
+    apart = f"{search.seconds:.1f} | {open_range} | {seconds['uncertain inputs']:.1f} | {samples}"
     return f"| {name} | {used:.1f} | {1e3 * one:.0f} | {apart} | {written.first.headline} |"
 
 

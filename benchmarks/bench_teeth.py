@@ -152,7 +152,7 @@ def times() -> None:
 def seeds() -> None:
     """64 pairs of seeds of class 6 on 19/41, 1450 rpm, 80 N m: 5, 50 and 95 % of a linear hunting period."""
     pair = new_pair("19/41", 2.5, 20.0, 1450.0, 80.0)
-    found = []
+    percentages = []
     start = time.process_time()
     for seed in range(1, 129, 2):
         run = lumped.steady_state(pair.with_(classed(6, seed)), contact="linear", samples_per_cycle=32)
@@ -163,10 +163,10 @@ def seeds() -> None:
             beside = sidebands(run, gear, most=1)
             for side in (-1, 1):
                 row[f"{gear}, z{side:+d}, %"] = 100.0 * float(beside["ratio"][0].sel(sideband=side))
-        found.append(row)
-    for name in found[0]:
-        line(name, *np.percentile([row[name] for row in found], (5, 50, 95)).tolist())
-    line("processor seconds a pair", (time.process_time() - start) / len(found))
+        percentages.append(row)
+    for name in percentages[0]:
+        line(name, *np.percentile([row[name] for row in percentages], (5, 50, 95)).tolist())
+    line("processor seconds a pair", (time.process_time() - start) / len(percentages))
 
 
 def main(names: Sequence[str]) -> None:

@@ -18,6 +18,7 @@ extensions = [
     "myst_parser",
     "sphinx.ext.autodoc",
     "sphinx_gallery.gen_gallery",
+    "extensions.gallery",
     "extensions.mathml",
     "extensions.docstrings",
     "extensions.scripts",

@@ -12,16 +12,17 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 from numpy.polynomial import chebyshev, polynomial
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import PPoly
 
-from lumped.compiler import compiled
 from lumped.errors import NumericalError
 from lumped.typing import FloatArray
+
+if TYPE_CHECKING:
+    from scipy.interpolate import PPoly
 
 Array = TypeVar("Array", NDArray[np.float64], NDArray[np.longdouble])
 
@@ -94,21 +95,23 @@ class PathFunction:
 
     def __call__(self, xi: ArrayLike) -> FloatArray:
         """Values at positions xi [m], any shape; zero outside the interval, right-continuous at switches."""
+        from lumped.path_values import values_at
+
         array = np.asarray(xi, dtype=float)
         places = array.ravel()[:]
         places.setflags(write=False)  # as breaks are: an array of another kind is another compilation
-        return _evaluated(self.breaks, self.coefficients, places).reshape(array.shape)
+        return values_at(self.breaks, self.coefficients, places).reshape(array.shape)
 
     @cached_property
     def slope(self) -> PathFunction:
         """The piecewise derivative df/dxi."""
-        poly = PPoly(self.coefficients, self.breaks).derivative()
+        poly = self._polynomials.derivative()
         return PathFunction(self.breaks, poly.c, self.switches)
 
     @cached_property
     def antiderivative(self) -> PathFunction:
         """The continuous function with this slope that is zero at the start."""
-        poly = PPoly(self.coefficients, self.breaks).antiderivative()
+        poly = self._polynomials.antiderivative()
         return PathFunction(self.breaks, poly.c, self.switches)
 
     @cached_property
@@ -133,8 +136,13 @@ class PathFunction:
     @cached_property
     def _mean(self) -> float:  # of a stiffness each speed asks for it
         low, high = self.interval
-        integral = PPoly(self.coefficients, self.breaks).integrate(low, high)
-        return float(integral) / (high - low)
+        return float(self._polynomials.integrate(low, high)) / (high - low)
+
+    @property
+    def _polynomials(self) -> PPoly:
+        from scipy.interpolate import PPoly
+
+        return PPoly(self.coefficients, self.breaks)
 
     def scaled(self, factor: float) -> PathFunction:
         """The function multiplied by a constant."""
@@ -214,34 +222,6 @@ class PathFunction:
         order = np.argsort(start)
         powers = series[order] @ _TO_POWERS / half[order, None] ** np.arange(FIT_DEGREE + 1)
         return cls(np.append(start[order], breaks[-1]), powers.T[::-1], np.asarray(switches))
-
-
-@compiled
-def _evaluated(breaks: FloatArray, coefficients: FloatArray, xi: FloatArray) -> FloatArray:
-    """Values (k,) at positions (k,). The piece of the previous position is tried first."""
-    values = np.zeros(xi.size)
-    last = breaks.size - 1
-    piece = 0
-    for i in range(xi.size):
-        x = xi[i]
-        if not breaks[0] <= x <= breaks[last]:
-            continue
-        if not (breaks[piece] <= x and (x < breaks[piece + 1] or piece == last - 1)):
-            low = 0
-            high = last
-            while high - low > 1:
-                middle = (low + high) // 2
-                if x >= breaks[middle]:
-                    low = middle
-                else:
-                    high = middle
-            piece = low
-        local = x - breaks[piece]
-        value = coefficients[0, piece]
-        for power in range(1, coefficients.shape[0]):
-            value = value * local + coefficients[power, piece]
-        values[i] = value
-    return values
 
 
 def shifted(coefficients: Array, by: ArrayLike) -> Array:

@@ -58,8 +58,7 @@ def ladder_text(result: Check) -> str:
     lines = [result.words]
     if result.problem is not None:
         lines += [
-            f"  {row.channel.channel.name}: misfit {percent(row.total)}"
-            for row in result.problem.misfit.channels
+            f"  {row.channel.channel.name}: misfit {percent(row.total)}" for row in result.nearer.channels
         ]
     for number, step in enumerate(result.explanations, start=1):
         lines.append(f"  {number}. {step.sentence}: the misfit is then {percent(step.misfit)}")

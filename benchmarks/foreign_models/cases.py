@@ -41,10 +41,10 @@ class Case(NamedTuple):
 def cases(kind: str | None = None) -> list[Case]:
     """Return the cases of a kind, or all."""
     sound = [Case(name, "sound", (), recipe.pair, recipe) for name, recipe in sound_recipes()]
-    every = [*sound, *(_case(one, "wrong") for one in WRONG), *(_case(one, "two") for one in TWO)]
+    every = [*sound, *(case_of(one, "wrong") for one in WRONG), *(case_of(one, "two") for one in TWO)]
     return [case for case in every if kind in (None, case.kind)]
 
 
-def _case(one: Wrong, kind: str) -> Case:
+def case_of(one: Wrong, kind: str) -> Case:
     truth = tuple(mistake.words for mistake in one.mistakes)
     return Case(one.name, kind, truth, one.pair, one.recipe())

@@ -29,7 +29,8 @@ def orders_of(times: np.ndarray, values: np.ndarray, period: float) -> np.ndarra
     """Complex mesh orders 0 to ``ORDERS`` by least squares, of shape (..., orders)."""
     angle = 2.0 * np.pi * np.outer(times - times[0], np.arange(1, ORDERS + 1)) / period
     basis = np.hstack([np.ones((times.size, 1)), np.cos(angle), np.sin(angle)])
-    fit = np.linalg.solve(basis.T @ basis, basis.T @ np.atleast_2d(values).T)
+    # The least norm where samples do not tell orders apart, as of a time in another unit.
+    fit = np.linalg.lstsq(basis.T @ basis, basis.T @ np.atleast_2d(values).T, rcond=1e-12)[0]
     return np.vstack([fit[:1].astype(complex), fit[1 : ORDERS + 1] - 1j * fit[ORDERS + 1 :]]).T
 
 

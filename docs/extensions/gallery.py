@@ -6,6 +6,8 @@ from pathlib import Path
 from typing import Any
 
 from matplotlib.figure import Figure
+from sphinx.application import Sphinx
+from sphinx_gallery import gen_gallery
 from sphinx_gallery.scrapers import figure_rst
 
 _saved: list[Figure] = []
@@ -30,3 +32,14 @@ def scraper(block: Any, block_vars: dict[str, Any], gallery_conf: dict[str, Any]
         _savefig(_saved.pop(0), paths[-1], dpi=120)
     Figure.savefig = _savefig  # type: ignore[method-assign]
     return str(figure_rst(paths, gallery_conf["src_dir"]))
+
+
+def no_sections(*args: Any, **kwargs: Any) -> list[str]:
+    """Folders inside ``examples`` are no sections of the gallery, though each has a README.md."""
+    return []
+
+
+def setup(app: Sphinx) -> dict[str, Any]:
+    """Leave folders inside ``examples`` out of the gallery."""
+    gen_gallery.get_subsections = no_sections
+    return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from floquet.engine.monodromy import checked_effort
 from floquet.engine.multipliers import VERDICTS, radii_with_bounds, verdicts
+from floquet.engine.node_boxes import FlatChart, Plane
 from floquet.engine.nodes import (
     TOGETHER,
     TOGETHER_IN_ONE_CALL,
@@ -23,8 +24,7 @@ from floquet.engine.nodes import (
     refuse_other_sizes,
     sampled_spectra,
 )
-from floquet.engine.refinement import gaps
-from floquet.engine.refinement import refine as refined
+from floquet.engine.refinement import NodeValues, gaps, search_leaves
 from lumped.arguments import of_type, real_numbers, some_of
 from lumped.errors import refuse, shown
 from lumped.labelling import Variable, labelled_dataset
@@ -85,7 +85,7 @@ class ChartPoints:
     verdict : (count,) 1 stable, 0 undecided, -1 unstable, 2 neutral
     proven : (count,) whether the error is a proven bound
     known : (count,) whether the point was evaluated; the others are interpolated
-    gap : (count,) `gaps` of evaluated points; None where every point is evaluated
+    gaps : of the points that are evaluated at present; None where every point of the chart is evaluated
     multipliers, multiplier_errors : (count, size) the largest modulus first; None without ``everything``
     cells : verdicts (N-1, M-1) of the cells between nodes; None: not asked for
     """
@@ -97,7 +97,7 @@ class ChartPoints:
         self.verdict = np.zeros(count, dtype=np.int8)
         self.proven = np.zeros(count, dtype=bool)
         self.known = np.zeros(count, dtype=bool)
-        self.gap: FloatArray | None = None
+        self.gaps: GapsOfBatch | None = None
         self.cells: IntArray | None = None
         self.multipliers: ComplexArray | None = None
         self.multiplier_errors: FloatArray | None = None
@@ -121,8 +121,8 @@ class ChartPoints:
         self.verdict[points] = verdicts(radius, error, neutral)
         self.proven[points] = proven
         self.known[points] = True
-        if self.gap is not None:
-            self.gap[points] = gaps(values[:, :coupled])
+        if self.gaps is not None:
+            self.gaps.put(points, gaps(values[:, :coupled]))
         if not self.everything:
             return
         if self.multipliers is None or self.multiplier_errors is None:
@@ -132,6 +132,24 @@ class ChartPoints:
         ranking = np.argsort(-np.abs(values), axis=1, kind="stable")
         self.multipliers[points] = np.take_along_axis(values, ranking, 1)
         self.multiplier_errors[points] = np.take_along_axis(errors, ranking, 1)
+
+
+class GapsOfBatch:
+    """The `gaps` of the points that one call evaluates: a chart needs the gaps of no other points.
+
+    Attributes
+    ----------
+    values : (k,) gaps, in the order of the points
+    """
+
+    def __init__(self, points: IntArray) -> None:
+        self.values = np.zeros(points.size)
+        self._order = np.argsort(points)
+        self._sorted = points[self._order]
+
+    def put(self, points: IntArray, values: FloatArray) -> None:
+        """Store the gaps of some of the points."""
+        self.values[self._order[np.searchsorted(self._sorted, points)]] = values
 
 
 #: Charts of no more nodes are evaluated at each of them: it takes no longer.
@@ -160,39 +178,31 @@ def refine_planes(
         widest at this value; False: three rows seed the search
     """
     names = list(grid)
-    order = [names.index(name) for name in plane] + [i for i, name in enumerate(names) if name not in plane]
     shape = [values.size for values in grid.values()]
-    index = np.arange(math.prod(shape)).reshape(shape).transpose(order)
+    strides = dict(zip(names, np.append(np.cumprod(shape[:0:-1])[::-1], 1).tolist(), strict=True))
     first, second = (np.argsort(grid[name]) for name in plane)
-    index = index[first][:, second].reshape(first.size, second.size, -1)
+    others = [np.arange(grid[name].size) * strides[name] for name in names if name not in plane]
+    starts = np.sum(np.meshgrid(*others, indexing="ij"), axis=0).ravel() if others else np.zeros(1, int)
     rows = (0,) if lowest_alone else (0, second.size // 2, -1)
-    points.gap = np.zeros(points.radius.size)
     smooth = np.ones(first.size) if cycles is None else cycles[first]
-    for k in range(index.shape[2]):
-        plane_points = index[:, :, k].ravel()
+    for k, start in enumerate(starts):
+        places = Plane(start + first * strides[plane[0]], second * strides[plane[1]])
 
-        def ask(
-            nodes: IntArray, plane_points: IntArray = plane_points
-        ) -> tuple[FloatArray, IntArray, FloatArray]:
-            point_numbers = plane_points[nodes]
-            evaluate(point_numbers)
-            assert points.gap is not None
-            return (
-                points.radius[point_numbers],
-                points.verdict[point_numbers].astype(np.intp),
-                points.gap[point_numbers],
-            )
+        def ask(nodes: IntArray, places: Plane = places) -> NodeValues:
+            i, j = np.divmod(nodes, places.columns.size)
+            chosen = places.rows[i] + places.columns[j]
+            batch = points.gaps = GapsOfBatch(chosen)
+            evaluate(chosen)
+            return NodeValues(points.radius[chosen], points.verdict[chosen], batch.values)
 
         def tell(fraction: float, stage: str = "", /, k: int = k) -> None:
             if progress is not None:
-                progress((k + fraction) / index.shape[2])
+                progress((k + fraction) / starts.size)
 
-        result = refined(index.shape[:2], smooth, ask, rows=rows, progress=tell)
-        rest = ~result.known.ravel()
-        points.radius[plane_points[rest]] = result.radius.ravel()[rest]
-        points.error[plane_points[rest]] = result.misfit.ravel()[rest]
-        points.verdict[plane_points[rest]] = result.verdict.ravel()[rest]
+        leaves = search_leaves((first.size, second.size), smooth, ask, rows=rows, progress=tell)
+        leaves.fill(places, FlatChart(points.radius, points.error, points.verdict))
         tell(1.0)
+    points.gaps = None
 
 
 def scan(

@@ -20,6 +20,7 @@ from lumped.fields.units import SIValue, to_stated
 from lumped.friction import mean_coefficient
 from lumped.friction.average_coefficient import longer_path
 from lumped.friction.base import PITCH_RESOLUTION, ContactPath, FrictionLaw, FrictionSettings
+from lumped.friction.benedict_kelley import LAW as BENEDICT_KELLEY
 from lumped.friction.registry import law_of
 from lumped.model.mesh_cycle import MeshCycle
 from lumped.model.periodic_system import Supports, supports_of
@@ -27,7 +28,7 @@ from lumped.path_of_contact.friction import contact_path, fit_law, violations_of
 from lumped.ranges import warn_violations
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import LARGEST_SPEED, GearPair
-from lumped.typing import FloatArray
+from lumped.typing import FloatArray, IntArray
 
 _POSITIONS = 8
 # Agreement along the path, relative to mu: rounding of the laws, far below the 1e-10 to which mu is fitted.
@@ -285,6 +286,23 @@ class FrictionFamily:
             return None
         return self.law.factors(self.speed_rpm, self.level is not None, weights)
 
+    def smooth_groups(self, speeds_rpm: FloatArray) -> IntArray:
+        """Number (k,) of the group of each speed; the speeds increase. Factors are smooth within a group.
+
+        The mean coefficient of laws I and IV is the mean of law II. This mean is linear in the logarithm of
+        speed as long as the bounds of law II do not move. Factors of other laws are smooth at all speeds.
+        """
+        if self.law is None or not self.law.mean_is_of_law_two(self.speed_rpm):
+            return np.zeros(speeds_rpm.size, dtype=np.int64)
+        law_two = self.law.law_two()
+        start = float(speeds_rpm[0])
+        begins_group = np.zeros(speeds_rpm.size, dtype=bool)
+        for k, rpm in enumerate(map(float, speeds_rpm)):
+            if not law_two.shifts_alone(start, rpm):
+                begins_group[k] = True
+                start = rpm
+        return np.cumsum(begins_group)
+
 
 def depends_on_speed(pair: GearPair) -> bool:
     """Whether mu(xi) changes with speed. Only a constant law with a given coefficient does not change."""
@@ -306,7 +324,7 @@ def friction_families(variation: GearVariation, speeds_rpm: FloatArray) -> list[
             path = contact_path(pair).at_speed(float(rpm) * np.pi / 30.0)
             warn_violations(violations_of(path, pair.friction, pair.friction.law))
         return [FrictionFamily(operating_rpm(pair), rest, None, np.ones((rest.size, 1)), None)]
-    law = _Law(variation)
+    law = _Law.of(variation)
     families = []
     while rest.size:
         reference = float(speeds_rpm[rest[rest.size // 2]])
@@ -322,16 +340,47 @@ def friction_families(variation: GearVariation, speeds_rpm: FloatArray) -> list[
 class _Law:
     """The friction law of a pair at other speeds than the operating speed."""
 
-    def __init__(self, variation: GearVariation) -> None:
-        self.path = contact_path(variation.pair)
-        self.settings = variation.pair.friction
-        self.law = law_of(self.settings)
-        self.to_mean = variation.friction_mean is not None
-        self.ends = MeshCycle.of(variation.pair).elements.friction.interval
+    def __init__(
+        self,
+        path: ContactPath,
+        ends: tuple[float, float],
+        settings: FrictionSettings,
+        law: FrictionLaw,
+        *,
+        to_mean: bool,
+    ) -> None:
+        self.path = path
+        self.settings = settings
+        self.law = law
+        self.to_mean = to_mean
+        self.ends = ends
         self.positions = _positions(replace(self.path, L_XA=self.ends[0], L_XD=self.ends[1]))
         self.values = cache(self._values)
+        self.at = cache(self._at)
 
-    def at(self, rpm: float) -> ContactPath:
+    @classmethod
+    def of(cls, variation: GearVariation) -> _Law:
+        """The law of a variation, over the positions of loaded teeth."""
+        settings = variation.pair.friction
+        ends = MeshCycle.of(variation.pair).elements.friction.interval
+        to_mean = variation.friction_mean is not None
+        return cls(contact_path(variation.pair), ends, settings, law_of(settings), to_mean=to_mean)
+
+    def mean_is_of_law_two(self, reference: float) -> bool:
+        """Whether mu changes with speed by the mean coefficient, and this is the mean of law II."""
+        law = self.in_force(reference)
+        return law is not None and law.coefficient and self.settings.coefficient is None and not self.to_mean
+
+    def law_two(self) -> _Law:
+        """Law II from A to D, where its mean is taken."""
+        ends = self.path.L_XA, self.path.L_XD
+        return _Law(self.path, ends, self.settings, BENEDICT_KELLEY, to_mean=False)
+
+    def shifts_alone(self, reference: float, rpm: float) -> bool:
+        """Whether mu at a speed is mu at a reference speed, apart from a factor and a constant."""
+        return self._pair(self.in_force(reference), reference, rpm) is not None
+
+    def _at(self, rpm: float) -> ContactPath:
         return self.path.at_speed(rpm * np.pi / 30.0)
 
     def in_force(self, rpm: float) -> FrictionLaw | None:

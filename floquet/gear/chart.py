@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 from scipy import ndimage
 
 from floquet.engine.chart import SMALL, Axes, ChartPoints, chart_dataset, refine_planes
@@ -55,6 +56,7 @@ _CELLS = ("speed_rpm", "damping_ratio")  # axes of a chart whose cells can be pr
 _FEWEST_PARTS = (800, 200)  # of each of these axes; a part is proven as a whole
 _CHUNK = 32_768  # points in memory with their matrices
 _LARGEST = 25_000_000
+_COUNTED = 1_000_000  # nodes that are counted at once
 _NAMED = 200  # largest number of regions that are named
 
 
@@ -391,10 +393,7 @@ class ChartSlice:
         damping = np.sort(self.damping)
         verdict = np.zeros((speeds.size - 1, damping.size - 1), dtype=np.intp)
         family_of_speed = self._rows[0][order]
-        ends = np.concatenate([[0], 1 + np.flatnonzero(np.diff(family_of_speed)), [family_of_speed.size]])
-        for i, j in pairwise(ends):
-            if j - i < 2:
-                continue
+        for i, j in self._smooth_runs(speeds, family_of_speed):
             family = self.families[family_of_speed[i]]
             block = self._block(int(family_of_speed[i]), rtol)
             # Motions that the mesh does not couple must die out, too: else only instability can be proven.
@@ -418,6 +417,14 @@ class ChartSlice:
             decided = lowest if separate_fade else np.minimum(lowest, 0)
             verdict[i : j - 1] = np.where(lowest == highest, decided, 0)
         return verdict
+
+    def _smooth_runs(self, speeds: FloatArray, family_of_speed: IntArray) -> Iterator[tuple[int, int]]:
+        """First index and end of runs of two or more neighbouring speeds in which factors are smooth."""
+        for i, j in _runs(family_of_speed):
+            family = self.families[family_of_speed[i]]
+            for first, end in _runs(family.smooth_groups(speeds[i:j])):
+                if end - first > 1:
+                    yield i + first, i + end
 
     def solve(
         self, places: IntArray, indices: Mapping[str, IntArray], points: ChartPoints, rtol: float
@@ -449,6 +456,11 @@ class ChartSlice:
                 result.multipliers, result.errors, symplectic & block.keeps_energy, block.separate
             )
             points.put(places[members], values, errors, True, result.multipliers.shape[1], neutral)
+
+
+def _runs(numbers: IntArray) -> Iterator[tuple[int, int]]:
+    """First index and end of runs of equal numbers."""
+    return pairwise([0, *(1 + np.flatnonzero(np.diff(numbers))).tolist(), numbers.size])
 
 
 def label_variation(variation: GearVariation) -> Tongue:
@@ -494,29 +506,38 @@ def label_regions(pair: AnyPair | GearVariation, chart: xr.Dataset) -> list[Labe
     variation = GearVariation.of(source, chart.attrs.get("supports"))
     radius = chart["spectral_radius"]
     names = list(map(str, radius.dims))
-    values = np.where(chart["known"].to_numpy(), radius.to_numpy(), -np.inf)
     along = names.index("speed_rpm") if "speed_rpm" in names else 0
     axis = chart[names[along]].to_numpy()
     cells = np.abs(np.gradient(axis)) if axis.size > 1 else np.zeros(1)
-    numbered, count = ndimage.label(chart["verdict"].to_numpy() == -1, structure=np.ones((3,) * values.ndim))
-    nodes = np.bincount(numbered.ravel(), minlength=count + 1)[1:]
+    numbered, count = ndimage.label(chart["verdict"].to_numpy() == -1, structure=np.ones((3,) * radius.ndim))
+    nodes = _counts(numbered, count)
     boxes = ndimage.find_objects(numbered)
     regions = []
     for index in np.argsort(-nodes, kind="stable")[:_NAMED]:
         box = boxes[index]
         inside = numbered[box] == index + 1
-        place = np.unravel_index(int(np.argmax(np.where(inside, values[box], -np.inf))), inside.shape)
+        values = np.where(inside & chart["known"].to_numpy()[box], radius.to_numpy()[box], -np.inf)
+        place = np.unravel_index(int(np.argmax(values)), inside.shape)
         point = {
             n: float(chart[n].to_numpy()[part.start + i])
             for n, part, i in zip(names, box, place, strict=True)
         }
         width = float((np.moveaxis(inside, along, -1) @ cells[box[along]]).max())
-        top = float(values[box][place])
+        top = float(values[place])
         with warnings.catch_warnings():  # the chart has told where its law leaves its range
             warnings.simplefilter("ignore", LawRangeWarning)
             label = label_variation(vary(variation, point))
         regions.append(LabelledRegion(label, point, top, int(nodes[index]), width))
     return regions
+
+
+def _counts(numbered: npt.NDArray[np.integer], count: int) -> IntArray:
+    """Number of nodes of each of so many regions; a copy of all numbers as 8 bytes each would be large."""
+    result = np.zeros(count + 1, dtype=np.int64)
+    flat = numbered.ravel()
+    for start in range(0, flat.size, _COUNTED):
+        result += np.bincount(flat[start : start + _COUNTED], minlength=count + 1)
+    return result[1:]
 
 
 def with_regions(variation: GearVariation, chart: xr.Dataset) -> xr.Dataset:

@@ -19,7 +19,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial.chebyshev import chebvander
 
-from floquet.engine.refinement import parts_of
 from floquet.rank_one.batch import fast_monodromies
 from floquet.rank_one.kernel_input import own, packed
 from floquet.rank_one.kernels.gains import Limits, Point, Problem
@@ -278,7 +277,9 @@ class FlowPolynomial:
             size.growth = within * largest / (1.0 - largest * wrong)
         error = size.error(periods, damping, _factor_change(T / t, factor_values))
         error += (1.0 + 2.0 / math.pi * math.log(x.size)) ** 2 * float(flow.errors.max())  # Lebesgue's
-        coefficients = np.einsum("aA,bB,ABij->abij", to_T, to_z, matrices)
+        along_period = (to_T @ matrices.reshape(x.size, -1)).reshape(matrices.shape)
+        coefficients = to_z @ along_period.reshape(x.size, y.size, -1)
+        coefficients = coefficients.reshape(matrices.shape)
         return cls(coefficients, error if math.isfinite(error) else math.inf, size.growth)
 
 
@@ -319,22 +320,53 @@ def _subdivided(patch: FlowPolynomial, periods: FloatArray, damping: FloatArray)
     """Verdicts of the cells of a patch. A box of cells is cut until it is proven or a single cell."""
     x, y = (2.0 * (v - v[0]) / (v[-1] - v[0]) - 1.0 for v in (periods, damping))
     verdict = np.zeros((x.size - 1, y.size - 1), dtype=np.intp)
-    boxes = [(0, x.size - 1, 0, y.size - 1)]
-    while boxes:
-        batch = boxes[:_BATCH]
-        boxes = boxes[_BATCH:]
-        a, b, c, d = np.array(batch).T
-        result, across, upward = decided(patch, np.stack([x[a], x[b]]), np.stack([y[c], y[d]]))
-        for k, (i, j, p, q) in enumerate(batch):
-            divisible_in_period = j - i > 1
-            divisible_in_damping = q - p > 1
-            if result[k]:
-                verdict[i:j, p:q] = result[k]
-            elif divisible_in_period or divisible_in_damping:
-                along = divisible_in_period and (2.0 * across[k] >= upward[k] or not divisible_in_damping)
-                up = divisible_in_damping and (2.0 * upward[k] >= across[k] or not divisible_in_period)
-                boxes += parts_of((i, j, p, q), along=along, up=up)
+    boxes = CellBoxes(*np.array([[0], [x.size - 1], [0], [y.size - 1]]))
+    while boxes.first.size:
+        batch = CellBoxes(*(ends[:_BATCH] for ends in boxes))
+        result = decided(
+            patch, np.stack([x[batch.first], x[batch.last]]), np.stack([y[batch.low], y[batch.high]])
+        )
+        for k in np.flatnonzero(result.verdict):
+            inside = slice(batch.first[k], batch.last[k]), slice(batch.low[k], batch.high[k])
+            verdict[inside] = result.verdict[k]
+        rest = CellBoxes(*(ends[_BATCH:] for ends in boxes))
+        boxes = CellBoxes(*map(np.concatenate, zip(rest, _parts(batch, result), strict=True)))
     return verdict
+
+
+class CellBoxes(NamedTuple):
+    """Boxes of cells: indices (k,) of their edges, first and last along the period, low and high along the
+    damping.
+    """
+
+    first: IntArray
+    last: IntArray
+    low: IntArray
+    high: IntArray
+
+
+def _parts(boxes: CellBoxes, decision: Decision) -> CellBoxes:
+    """Halves or quarters of all boxes that are not decided and have several cells.
+
+    A box is cut along the axis along which its entries vary more, along both if they vary alike.
+    """
+    first, last, low, high = boxes
+    is_long = last - first > 1
+    is_tall = high - low > 1
+    undecided = decision.verdict == 0
+    along = undecided & is_long & ((2.0 * decision.across >= decision.upward) | ~is_tall)
+    up = undecided & is_tall & ((2.0 * decision.upward >= decision.across) | ~is_long)
+    i = np.where(along, (first + last) // 2, last)
+    j = np.where(up, (low + high) // 2, high)
+    quarters = (
+        (CellBoxes(first, i, low, j), along | up),
+        (CellBoxes(first, i, j, high), up),
+        (CellBoxes(i, last, low, j), along),
+        (CellBoxes(i, last, j, high), along & up),
+    )
+    return CellBoxes(
+        *(np.concatenate([part[k][is_cut] for part, is_cut in quarters]) for k in range(len(boxes)))
+    )
 
 
 class Decision(NamedTuple):

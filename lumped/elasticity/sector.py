@@ -12,10 +12,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.optimize import brentq
 
 from lumped.elasticity.elements import Quadrature, line_shapes, quadrature
 from lumped.gear_geometry.tooth_profile import ToothProfile
+from lumped.root_in_bracket import root_in_bracket
 from lumped.typing import FloatArray, IntArray
 
 #: Where elements at the surface are 0.3 modules long: growth of the rows below it, their largest share of r.
@@ -175,7 +175,7 @@ def _foot(profile: ToothProfile) -> float:
     low, high = (bottom + share * (joint - bottom) for share in (1e-3, 0.97))
     if excess(low) <= 0.0:
         return low
-    return high if excess(high) >= 0.0 else float(brentq(excess, low, high))
+    return high if excess(high) >= 0.0 else float(root_in_bracket(excess, low, high))
 
 
 def _arc(profile: ToothProfile, start: float, end: float) -> float:

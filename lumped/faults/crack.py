@@ -13,12 +13,12 @@ from typing import Annotated, Literal
 import numpy as np
 from numpy.polynomial import polynomial
 from pydantic import Field
-from scipy.optimize import brentq
 
 from lumped.errors import FieldProblem
 from lumped.faults.base import Flank, ToothFault
 from lumped.fields.units import Quantity
 from lumped.gear_geometry.tooth_profile import ToothProfile
+from lumped.root_in_bracket import root_in_bracket
 from lumped.typing import FloatArray
 
 #: Deepest crack over the section's thickness: beyond, neither strip nor cantilever.
@@ -67,6 +67,6 @@ def root_section(tooth: ToothProfile) -> tuple[float, float]:
     high = top - 1e-5 * (top - bottom)
     # A fillet whose slope stays below or above 30 degrees has its critical section at that end.
     ends = slope(low), slope(high)
-    roll = brentq(slope, low, high) if ends[0] * ends[1] < 0.0 else (high if ends[0] > 0.0 else low)
+    roll = root_in_bracket(slope, low, high) if ends[0] * ends[1] < 0.0 else (high if ends[0] > 0.0 else low)
     u, h, _ = tooth.fillet_points(np.array([roll]))
     return float(u[0]), float(h[0])

@@ -6,17 +6,19 @@ import itertools
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 from pydantic import ValidationInfo
-from scipy.interpolate import CubicSpline, PchipInterpolator, PPoly
 
 from lumped.errors import FieldProblem, refuse, shown
 from lumped.fields.text_file import read_text
 from lumped.fields.units import to_si
 from lumped.typing import FloatArray
+
+if TYPE_CHECKING:
+    from scipy.interpolate import PPoly
 
 #: Column -> (axis of the table, unit of its numbers).
 AXES = {"position": ("position_mm", "mm"), "roll_angle": ("roll_angle_deg", "deg"), "phase": ("phase", "1")}
@@ -125,6 +127,8 @@ def positions(points: ArrayLike, axis: str, base_radius: float) -> FloatArray:
 
 def spline(x: FloatArray, y: FloatArray, interpolation: str) -> PPoly:
     """Interpolate: "monotone" or "cubic"."""
+    from scipy.interpolate import CubicSpline, PchipInterpolator, PPoly
+
     result = PchipInterpolator(x, y) if interpolation == "monotone" else CubicSpline(x, y)
     return PPoly(result.c, result.x)
 

@@ -6,6 +6,7 @@ import math
 import operator
 import re
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from decimal import Decimal, DivisionByZero, InvalidOperation, Overflow
 from functools import cache, cached_property, lru_cache
@@ -227,6 +228,21 @@ def _number_to_si(text: str, unit: str) -> float:
     return float(number + _ZERO_CELSIUS if unit == "degC" else number * UNITS[unit].factor)
 
 
+def _in_unit_of_files(text: str, unit: str) -> float | None:
+    """Convert a number with a unit of ``UNITS`` to SI, without pint: pint takes longer to import than to use.
+
+    None: the text is anything else, or has no finite value.
+    """
+    match = _NUMBER.match(text)
+    named = text[match.end() :] if match else ""
+    if match is None or named == "1" or named not in UNITS or UNITS[named].si != UNITS[unit].si:
+        return None
+    with suppress(Overflow):
+        number = _number_to_si(match[1], named)
+        return number if math.isfinite(number) else None
+    return None
+
+
 def to_si(value: float | str, unit: str) -> float:
     """Convert a number in the stated unit, or text with a unit, to SI.
 
@@ -240,9 +256,11 @@ def to_si(value: float | str, unit: str) -> float:
         return float(value)
     if not isinstance(value, str):
         return _number_to_si(repr(float(value)), unit)
-    registry = _registry()
     if len(value) > 80:
         raise ValueError(f"text of {len(value)} characters is no quantity; {advice}")
+    number = _in_unit_of_files(value, unit)
+    if number is not None:
+        return number
     # The unit parser drops what it does not know: it would read 1,5 as 15.
     text = _in_degrees(value) if si == "rad" else value
     if odd := _NOT_IN_QUANTITY.search(text):
@@ -254,6 +272,7 @@ def to_si(value: float | str, unit: str) -> float:
     # Into pint's grammar; "lb" is a force where the stated unit is a torque, else a mass.
     for pattern, instead in (*_EVERYWHERE, *_WHERE.get(unit, ())):
         text = pattern.sub(instead, text)
+    registry = _registry()
     try:
         quantity: pint.Quantity[Decimal] = registry.Quantity(text)
     except (InvalidOperation, Overflow, DivisionByZero):

@@ -13,11 +13,11 @@ from functools import lru_cache
 from typing import Protocol
 
 import numpy as np
-from scipy.optimize import brentq
 
 from lumped.lubrication import film
 from lumped.path_function import PathFunction
 from lumped.ranges import ValidityRange
+from lumped.root_in_bracket import root_in_bracket
 from lumped.typing import BoolArray, FloatArray
 
 #: Distance from the pitch point [m] below which law II is constant. A position xi near 0.01 m is known to
@@ -191,7 +191,7 @@ class ContactPath:
                 low, high = float(distances[j]), float(distances[j + 1])
                 if value(low) * value(high) > 0.0:  # a root on the grid: the next interval has it
                     continue
-                root = brentq(value, low, high, xtol=1e-9 * PITCH_RESOLUTION, rtol=_ROOT_TOLERANCE)
+                root = root_in_bracket(value, low, high, xtol=1e-9 * PITCH_RESOLUTION, rtol=_ROOT_TOLERANCE)
                 roots.append(self.L_XP + side * float(root))
         return sorted(xi for xi in roots if self.L_XA < xi < self.L_XD)
 

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.optimize import brentq
 
+from lumped.root_in_bracket import root_in_bracket
 from lumped.typing import FloatArray
 
 
@@ -32,7 +32,7 @@ def inverse_involute(value: float) -> float:
     >>> round(math.degrees(inverse_involute(0.014904)), 3)
     20.0
     """
-    return float(brentq(lambda angle: involute(angle) - value, 0.0, 1.5, xtol=1e-15, rtol=1e-15))
+    return float(root_in_bracket(lambda angle: involute(angle) - value, 0.0, 1.5, xtol=1e-15, rtol=1e-15))
 
 
 def tooth_half_angle(teeth: int, profile_shift: float, pressure_angle: float, radius_angle: float) -> float:
@@ -157,12 +157,12 @@ class ToothProfile:
             half = tooth_half_angle(self.teeth, self.profile_shift, self.pressure_angle, profile)
             return float(np.arctan2(x, y)) + roll - (math.pi / self.teeth - half)
 
-        base = brentq(lambda roll: radius(roll) - r_base, bottom, joint, xtol=1e-15)
+        base = root_in_bracket(lambda roll: radius(roll) - r_base, bottom, joint, xtol=1e-15)
         if depth(base) <= 0.0:
             return 0.0
         # By rounding the depth may vanish at a joint close to the base circle. The crossing is then the
         # joint.
-        crossing = joint if depth(joint) >= 0.0 else brentq(depth, base, joint, xtol=1e-15)
+        crossing = joint if depth(joint) >= 0.0 else root_in_bracket(depth, base, joint, xtol=1e-15)
         return math.sqrt(max(radius(crossing) ** 2 - r_base**2, 0.0))
 
     @property
@@ -191,7 +191,7 @@ class ToothProfile:
 
         if excess(joint) <= 1e-9 * self.module:  # the joint is the end of the fillet: no undercut
             return bottom, joint
-        return bottom, float(brentq(excess, bottom, joint, xtol=1e-14))
+        return bottom, float(root_in_bracket(excess, bottom, joint, xtol=1e-14))
 
     def involute_points(self, length: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """Points u, h of the involute at lengths L along the base tangent [m], any shape; du/dL [-]; angle a.

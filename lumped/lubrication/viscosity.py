@@ -9,10 +9,10 @@ import math
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq
 
 from lumped.errors import refuse
 from lumped.ranges import checked
+from lumped.root_in_bracket import root_in_bracket
 from lumped.typing import FloatArray
 
 ZERO_CELSIUS = 273.15
@@ -144,7 +144,7 @@ def viscosity_at_100(viscosity_40: float, index: float = DEFAULT_VISCOSITY_INDEX
             f"an oil of at least {_LOWEST_Y:g} mm^2/s at 100 degC (ASTM D2270)",
             "Give the viscosity at 100 degC instead.",
         )
-    return float(brentq(excess, _LOWEST_Y, top, xtol=1e-12, rtol=1e-12))
+    return float(root_in_bracket(excess, _LOWEST_Y, top, xtol=1e-12, rtol=1e-12))
 
 
 def grade_viscosity(grade: int, temperature: ArrayLike, index: float = DEFAULT_VISCOSITY_INDEX) -> FloatArray:

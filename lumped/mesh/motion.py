@@ -227,7 +227,7 @@ def write_output(
         loads[i, row] = normal[i]
 
 
-@compiled
+@compiled(nogil=True)
 def run_cycles(
     span: CycleSpan,
     tables: MeshTables,
@@ -243,7 +243,7 @@ def run_cycles(
     ----------
     tables : its nodes are start, middle and end of each step
     initial : (2m,) state
-    mesh : memory
+    mesh : memory. Where all cycles are alike, a further run with this memory finds the pairs written
     work : (1,) WORK, to which the work in the recorded cycles is added
     """
     m = body.torque.size
@@ -266,7 +266,9 @@ def run_cycles(
     zero = steps - steps  # numba would compile ``fill_steps`` once more for the literal 0
     for cycle in range(span.start, span.start + span.cycles):
         records = cycle >= span.start + span.cycles - span.recorded
-        fill_steps(cycle, zero, steps, tables, mesh)
+        if not (tables.alike and mesh.filled[0] == 1):
+            fill_steps(cycle, zero, steps, tables, mesh)
+            mesh.filled[0] = 1
         for step in range(steps):
             length = edges[step + 1] - edges[step]
             h = length * tables.duration

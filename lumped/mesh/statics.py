@@ -81,7 +81,7 @@ def least_gap(pairs: Records) -> float:
     return least
 
 
-@compiled
+@compiled(nogil=True)
 def static_approaches(
     phases: Phases,
     force: FloatArray,
@@ -114,7 +114,7 @@ def static_approaches(
     return approaches
 
 
-@compiled
+@compiled(nogil=True)
 def middle_contacts(
     approach: FloatArray,
     phases: Phases,

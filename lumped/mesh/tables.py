@@ -77,6 +77,7 @@ class MeshTables(NamedTuple):
     duration : of a mesh cycle [s]
     lengthening : length that the deflection of the bearings adds to the line of action [m]
     law : law of the contact
+    alike : whether all mesh cycles are alike: like teeth that nothing swings
     """
 
     edges: FloatArray
@@ -102,6 +103,7 @@ class MeshTables(NamedTuple):
     duration: float
     lengthening: float
     law: ContactLaw
+    alike: bool
 
 
 class CyclePairs(NamedTuple):
@@ -115,6 +117,7 @@ class CyclePairs(NamedTuple):
     contacts, matrix : (pairs,) CONTACT and (pairs, pairs), memory of ``write_elastic_loads``
     starts : (2 + ripples, 2) amplitude of each TURNING, times cosine and sine of its angle at the start of
         the cycle
+    filled : (1,) 1 where the pairs of a cycle have been written
     """
 
     pairs: Records
@@ -125,6 +128,7 @@ class CyclePairs(NamedTuple):
     contacts: Records
     matrix: FloatArray
     starts: FloatArray
+    filled: IntArray
 
 
 class TableNode(NamedTuple):
@@ -155,6 +159,7 @@ def cycle_pairs(tables: MeshTables) -> CyclePairs:
         contacts=np.zeros(count, CONTACT),
         matrix=np.zeros((count, count)),
         starts=np.zeros((tables.turning.size, 2)),
+        filled=np.zeros(1, np.int64),
     )
 
 

@@ -1,4 +1,4 @@
-"""Motion by momentary load: a run from any state, the steps of the run, and the mean powers that it records.
+"""Motion by momentary load: runs from any state, the steps of the run, and the mean powers that it records.
 
 Sources: docs/theory/teeth.md, "Motion", "Brake torque"; docs/theory/validity.md, "Prediction".
 """
@@ -6,12 +6,15 @@ Sources: docs/theory/teeth.md, "Motion", "Brake torque"; docs/theory/validity.md
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from lumped.errors import NumericalError
 from lumped.mesh.motion import WORK, Body, CycleSpan, Run, run_cycles
-from lumped.mesh.tables import MeshTables, cycle_pairs
+from lumped.mesh.records import CONTACT, Records
+from lumped.mesh.tables import CyclePairs, MeshTables, cycle_pairs
 from lumped.model.equations import Y_G, Y_P
 from lumped.model.periodic_system import LTVSystem
 from lumped.model.propagation import fastest_frequency
@@ -50,7 +53,7 @@ def steps_of(system: LTVSystem) -> int:
 
 
 def momentary_tables(laws: ToothLaws, system: LTVSystem, step: float, outputs: int) -> MeshTables:
-    """Tables for ``run``, with steps of at most ``step`` mesh cycles and ``outputs`` outputs in a cycle."""
+    """Tables for ``MomentaryRuns``: steps of at most ``step`` mesh cycles, ``outputs`` outputs in a cycle."""
     return swinging(mesh_tables(laws, step, outputs, (0.0, 0.5, 1.0)), system)
 
 
@@ -85,41 +88,62 @@ def without_drift(
     return states
 
 
-def run(
-    pair: GearPair,
-    tables: MeshTables,
-    system: LTVSystem,
-    start: int,
-    cycles: int,
-    recorded: int,
-    state: FloatArray,
-    torques: FloatArray,
-) -> Run:
-    """Follow the motion of a pair on its supports over mesh cycles.
+@dataclass(frozen=True, eq=False)
+class MomentaryRuns:
+    """Runs of a pair on its supports by momentary load, over tables of its mesh cycle.
 
-    Parameters
+    Attributes
     ----------
-    start, cycles, recorded : as of ``CycleSpan``
-    state : (2m,) state at the start
-    torques : (2m,) constant accelerations by the torques
+    pair : gear pair
+    system : the "full" system of the pair with like teeth
+    tables : tables of ``momentary_tables``
     """
-    ripples = torque_ripples(pair)
-    mesh = cycle_pairs(tables)
-    work = np.zeros(1, WORK)
-    span = CycleSpan(start, cycles, recorded)
-    result: Run = run_cycles(span, tables, body_of(system, torques), ripples, state, mesh, work)
-    return result
+
+    pair: GearPair
+    system: LTVSystem
+    tables: MeshTables
+
+    @cached_property
+    def ripples(self) -> Records:
+        """RIPPLE of each harmonic of the torques."""
+        return torque_ripples(self.pair)
+
+    @cached_property
+    def body(self) -> Body:
+        """The gears on their supports, without torques."""
+        return body_of(self.system)
+
+    @cached_property
+    def mesh(self) -> CyclePairs:
+        """Memory for the tooth pairs of a mesh cycle."""
+        return cycle_pairs(self.tables)
+
+    def run(self, start: int, cycles: int, recorded: int, state: FloatArray, torques: FloatArray) -> Run:
+        """Follow the motion over mesh cycles.
+
+        Parameters
+        ----------
+        start, cycles, recorded : as of ``CycleSpan``
+        state : (2m,) state at the start
+        torques : (2m,) constant accelerations by the torques
+        """
+        # The loads of a run start from 0, so that no run depends on the run before.
+        mesh = self.mesh._replace(contacts=np.zeros(self.tables.ahead.size, CONTACT))
+        body = self.body._replace(torque=np.ascontiguousarray(torques[len(self.system.coordinates) :]))
+        span = CycleSpan(start, cycles, recorded)
+        result: Run = run_cycles(span, self.tables, body, self.ripples, state, mesh, np.zeros(1, WORK))
+        return result
 
 
-def body_of(system: LTVSystem, torques: FloatArray) -> Body:
-    """The gears on their supports as numbers, with constant accelerations (2m,) by the torques."""
+def body_of(system: LTVSystem) -> Body:
+    """The gears on their supports as numbers, without torques."""
     g = system.pair.geometry
     m = len(system.coordinates)
     rates = system.gears
     per_normal, per_friction_force, per_friction_moment = np.ascontiguousarray(system.per_load)
     return Body(
         constant=np.ascontiguousarray(system.constant[m:]),
-        torque=np.ascontiguousarray(torques[m:]),
+        torque=np.zeros(m),
         deflection=np.ascontiguousarray(system.deflection),
         per_normal=per_normal,
         per_friction_force=per_friction_force,

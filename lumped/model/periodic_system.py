@@ -6,7 +6,7 @@ Sources: Abbas Al-Zubaidi 2008, eqs. 1 to 9, repaired and derived in docs/theory
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal, Self, get_args
 
@@ -137,11 +137,15 @@ class LTVSystem:
         as_printed: Collection[int] = (),
         cycle: MeshCycle | None = None,
         supports: Supports,
+        equations: Structure | None = None,
     ) -> Self:
-        """Return the system of a gear pair; arguments as of ``periodic_system``."""
+        """Return the system of a gear pair; arguments as of ``periodic_system``.
+
+        ``equations`` replaces the constant data of the equations of motion, on springs.
+        """
         one_of("form", form, get_args(Form))
         one_of("supports", supports, get_args(Supports))
-        s = structure(pair, as_printed)
+        s = structure(pair, as_printed) if equations is None else equations
         support = SUPPORTS[supports](pair, s)
         z = support.coordinates(form)
         m = len(z.names)
@@ -166,6 +170,15 @@ class LTVSystem:
             gyroscopic=z.gyroscopic,
             supports=support,
         )
+
+    def at_speed(self, pair: GearPair, cycle: MeshCycle) -> LTVSystem:
+        """Return the system of a pair that differs in speed alone, with its mesh cycle.
+
+        On springs only the mesh cycle changes; shafts have gyroscopic moments.
+        """
+        if self.supports.name == "springs":
+            return replace(self, pair=pair, cycle=cycle)
+        return LTVSystem.of(pair, self.form, cycle=cycle, supports="shafts")
 
     @property
     def pinion_torque(self) -> float:

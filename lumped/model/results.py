@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -52,6 +54,35 @@ VARIABLES: dict[str, tuple[tuple[str, ...], str, str]] = {
 }
 
 
+@dataclass(frozen=True, eq=False)
+class PlainMotion:
+    """A motion as plain arrays. Its dataset, which takes ten times as long, is made when a user needs it.
+
+    Attributes
+    ----------
+    time : (k,) [s]
+    values : name of ``VARIABLES`` -> (k,) or (pairs, k), in SI
+    attributes : numbers and texts of the motion; what the dataset has beside them is about its origin
+    make_dataset : returns the motion with labels, units and the attributes about its origin
+    """
+
+    time: FloatArray
+    values: Mapping[str, FloatArray]
+    attributes: Mapping[str, Any]
+    make_dataset: Callable[[], xr.Dataset]
+
+    @cached_property
+    def dataset(self) -> xr.Dataset:
+        """The motion as a dataset with names and units."""
+        return self.make_dataset()
+
+
+def plain(motion: xr.Dataset) -> PlainMotion:
+    """Return the arrays of a dataset that a model has made."""
+    values = {name: motion[name].to_numpy() for name in VARIABLES if name in motion}
+    return PlainMotion(motion["time"].to_numpy(), values, motion.attrs, lambda: motion)
+
+
 def labelled(
     time: FloatArray,
     values: Mapping[str, FloatArray],
@@ -73,7 +104,26 @@ def dataset(
     system: LTVSystem, time: FloatArray, states: FloatArray, attributes: Mapping[str, Any]
 ) -> xr.Dataset:
     """Return states (k, n) of the "full" system as a dataset, with all loads and velocities that follow."""
-    return system.supports.labelled(labelled(time, response(system, time, states), attributes), states)
+    return plain_linear(system, time, states, attributes, dict).dataset
+
+
+def plain_linear(
+    system: LTVSystem,
+    time: FloatArray,
+    states: FloatArray,
+    attributes: Mapping[str, Any],
+    origin: Callable[[], dict[str, Any]],
+) -> PlainMotion:
+    """Return states (k, n) of the "full" system as a motion, with all loads and velocities that follow.
+
+    ``origin`` returns the attributes about the origin of the motion, which only the dataset has.
+    """
+    values = response(system, time, states)
+
+    def make_dataset() -> xr.Dataset:
+        return system.supports.labelled(labelled(time, values, origin() | dict(attributes)), states)
+
+    return PlainMotion(time, values, attributes, make_dataset)
 
 
 def load_range(pair: GearPair, load: FloatArray, contact: FloatArray) -> tuple[float, float]:

@@ -6,6 +6,7 @@ Sources: docs/theory/teeth.md, "Motion", "Brake torque".
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import Enum
 from functools import cached_property
@@ -18,7 +19,7 @@ from lumped.mesh.tables import MeshTables
 from lumped.model.linear_or_unilateral import ContactArgument
 from lumped.model.mesh_cycle import PairState
 from lumped.model.periodic_system import LTVSystem
-from lumped.model.results import labelled, peak_to_peak, response
+from lumped.model.results import PlainMotion, labelled, peak_to_peak, response
 from lumped.model.swing import swing
 from lumped.quasi_static.contacts import contact_of
 from lumped.schema.meeting_teeth import teeth_of_pairs
@@ -187,38 +188,53 @@ def default_samples(period: int) -> int:
     return min(max(samples, _LEAST_SAMPLES), _MOST_SAMPLES)
 
 
-def labelled_motion(
-    motion: RevolutionMotion, attributes: dict[str, Any], *, periodic: bool = True
-) -> xr.Dataset:
-    """Return a motion as a dataset with the names of ``lumped.model.results.VARIABLES``.
+def plain_motion(
+    motion: RevolutionMotion, origin: Callable[[], dict[str, Any]], *, periodic: bool = True
+) -> PlainMotion:
+    """Return a motion with the names of ``lumped.model.results.VARIABLES``.
 
-    Of teeth that differ the dataset names the teeth of each pair. A transient is not ``periodic`` and has no
-    attributes of a periodic motion.
+    A transient is not ``periodic`` and has no attributes of a periodic motion. ``origin`` returns the
+    attributes about the origin of the motion, which only the dataset has. Of teeth that differ the dataset
+    names the teeth of each pair.
     """
     system = motion.system
-    pairs = motion.pairs
     places = motion.shown_places
-    values = response(system, motion.time, motion.states, motion.load[places], pairs.of_places(places))
+    pairs = motion.pairs.of_places(places)
+    values = response(system, motion.time, motion.states, motion.load[places], pairs)
     if motion.stiffness is not None:
         values["mesh_stiffness"] = motion.stiffness
-    further: dict[str, Variable] = {}
-    alike = motion.pair.healthy is motion.pair
-    if not alike:
-        further = {
-            f"{name}_tooth": (
-                ("pair", "time"),
-                teeth[places] + 1,
-                "1",
-                f"tooth of the {name}, counted from 1",
-            )
-            for name, teeth in zip(("pinion", "gear"), motion.teeth, strict=True)
-        }
-    attributes = attributes | motion.balance(contact_of(motion.pair).conservative)
+    attributes = _attributes(motion) | (_of_period(motion, values) if periodic else {})
+
+    def make_dataset() -> xr.Dataset:
+        run = labelled(motion.time, values, origin() | attributes, _teeth_of_pairs(motion))
+        return system.supports.labelled(run, motion.states)
+
+    return PlainMotion(motion.time, values, attributes, make_dataset)
+
+
+def _teeth_of_pairs(motion: RevolutionMotion) -> dict[str, Variable]:
+    """Variables with the teeth of each pair, where teeth differ."""
+    if motion.pair.healthy is motion.pair:
+        return {}
+    return {
+        f"{name}_tooth": (
+            ("pair", "time"),
+            teeth[motion.shown_places] + 1,
+            "1",
+            f"tooth of the {name}, counted from 1",
+        )
+        for name, teeth in zip(("pinion", "gear"), motion.teeth, strict=True)
+    }
+
+
+def _attributes(motion: RevolutionMotion) -> dict[str, Any]:
+    """Attributes of every motion: torques, losses and the words that say which motion it is."""
+    attributes: dict[str, Any] = dict(motion.balance(contact_of(motion.pair).conservative))
     attributes |= {
         "model": "lumped",
         "contact": motion.touch.contact,
         "period_cycles": motion.period,
-        "teeth": "alike" if alike else "as given",
+        "teeth": "alike" if motion.pair.healthy is motion.pair else "as given",
         "touch": motion.touch.value,
         "spectral_radius": motion.spectral_radius,
     }
@@ -228,10 +244,7 @@ def labelled_motion(
         attributes |= {f"power_{place}": power for place, power in motion.losses.items()}
         residual = 0.0 if contact_of(motion.pair).conservative else motion.powers["rolling"]
         attributes["power_energy_residual"] = residual
-    if periodic:
-        attributes |= _of_period(motion, values)
-    run = labelled(motion.time, values, attributes, further)
-    return system.supports.labelled(run, motion.states)
+    return attributes
 
 
 def _of_period(motion: RevolutionMotion, values: dict[str, FloatArray]) -> dict[str, float]:

@@ -17,7 +17,7 @@ from lumped.labelling import Variable, provenance
 from lumped.mesh.tables import MeshTables
 from lumped.model.cycle_maps import CycleSteps, linear_steps, loads_of, stepped_run
 from lumped.model.linear_or_unilateral import ContactArgument, MotionForm, motion_form
-from lumped.model.momentary_load import momentary_tables, run, steps_of
+from lumped.model.momentary_load import MomentaryRuns, momentary_tables, steps_of
 from lumped.model.period_closure import balanced_start
 from lumped.model.periodic_system import LTVSystem, Supports, supports_of
 from lumped.model.propagation import step_maps
@@ -204,7 +204,8 @@ def _unilateral(
         rate = float(weights @ state[m:])
         brake = linear.brake_torque + (missing - rate / duration) / per_torque
         torques = linear.pinion_torque * system.torque_pinion + brake * system.torque_gear
-        run_of_group = run(pair, tables, system, first, last - first, last - first, state, torques)
+        runs = MomentaryRuns(pair, system, tables)
+        run_of_group = runs.run(first, last - first, last - first, state, torques)
         state = run_of_group.end
         # The rate that the torque did not bring to zero is what the next group has to supply.
         missing -= float(weights @ state[m:]) / duration

@@ -6,7 +6,7 @@ Sources: docs/theory/equations.md, "Periodic motion and the brake torque".
 from __future__ import annotations
 
 from collections.abc import Collection
-from typing import TYPE_CHECKING, Literal, Protocol
+from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,7 +17,7 @@ from lumped.labelling import provenance
 from lumped.model.periodic_system import LTVSystem, Supports
 from lumped.model.powers import power_attributes
 from lumped.model.propagation import STEP_ANGLE, step_maps
-from lumped.model.results import dataset
+from lumped.model.results import PlainMotion, dataset, plain_linear
 from lumped.model.steady import periodic_solution, sample_times
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray, Progress
@@ -124,8 +124,8 @@ def steady_cycle(
     *,
     estimate_error: bool = True,
     step_angle: float = STEP_ANGLE,
-) -> xr.Dataset:
-    """Result of ``lumped.steady_state`` for the linear motion of like teeth, over one mesh cycle.
+) -> PlainMotion:
+    """Motion of ``lumped.steady_state`` in the linear form of like teeth, over one mesh cycle.
 
     ``estimate_error`` says whether the error is estimated; ``step_angle`` is the largest angle of the fastest
     vibration in a step [rad].
@@ -133,8 +133,7 @@ def steady_cycle(
     system = LTVSystem.of(pair, "full", as_printed=as_printed, supports=supports)
     times = sample_times(system.period, samples_per_cycle)
     solution = periodic_solution(system, times, estimate_error=estimate_error, step_angle=step_angle)
-    attributes = provenance(pair, samples_per_cycle=samples_per_cycle, as_printed=tuple(as_printed))
-    attributes |= power_attributes(solution) | {
+    attributes: dict[str, Any] = power_attributes(solution) | {
         "model": "lumped",
         "contact": "linear",
         "closure": solution.closure,
@@ -142,4 +141,8 @@ def steady_cycle(
     }
     attributes |= {} if solution.error is None else {"error_estimate": solution.error}
     attributes |= {f"{name}_peak_to_peak": value for name, value in solution.peak_to_peak.items()}
-    return dataset(system, times, solution.states, attributes)
+
+    def origin() -> dict[str, Any]:
+        return provenance(pair, samples_per_cycle=samples_per_cycle, as_printed=tuple(as_printed))
+
+    return plain_linear(system, times, solution.states, attributes, origin)

@@ -19,6 +19,8 @@ from lumped.typing import FloatArray
 #: A largest multiplier above this is an instability. Without damping it is 1, and steps and rounding move a
 #: defective multiplier by up to the root of their error, 1e-12.
 UNSTABLE = 1.0 + 1e-6
+#: Variables of which a periodic motion has the peak to peak: the transmission error and the translations.
+SWINGING = ("dte", *COORDINATES[2:])
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,15 +71,21 @@ class PeriodicSolution:
     @cached_property
     def peak_to_peak(self) -> dict[str, float]:
         """Variable -> its peak to peak over the cycle [m], with switches and extremes between samples."""
-        return _peaks(self.system, self.cycle_time, self.cycle_states)
+        return {name: self.peak_to_peak_of(name) for name in SWINGING}
+
+    def peak_to_peak_of(self, name: str) -> float:
+        """Peak to peak of one of the variables of ``peak_to_peak`` [m]."""
+        return _peak_to_peak(self.system, self.cycle_time, self.cycle_states, name)
 
     @property
     def between(self) -> dict[str, float]:
         """Part of the peak to peak of each variable that lies between the times and is missed there [m]."""
         times = np.append(self.time, self.system.period)
         states = np.vstack([self.states, self.states[:1]])
-        seen = _peaks(self.system, times, states)
-        return {name: exact - seen[name] for name, exact in self.peak_to_peak.items()}
+        return {
+            name: exact - _peak_to_peak(self.system, times, states, name)
+            for name, exact in self.peak_to_peak.items()
+        }
 
     @cached_property
     def energy_residual(self) -> float:
@@ -134,11 +142,11 @@ def periodic_cycle(pair: GearPair, samples: int, *, supports: Supports = "spring
     return periodic_solution(system, sample_times(system.period, samples), estimate_error=False)
 
 
-def _peaks(system: LTVSystem, times: FloatArray, states: FloatArray) -> dict[str, float]:
-    """Peak to peak of the transmission error and of the translations, by name [m]."""
-    to = {"dte": system.structure.deflection} | dict(zip(COORDINATES[2:], np.eye(6)[2:], strict=True))
+def _peak_to_peak(system: LTVSystem, times: FloatArray, states: FloatArray, name: str) -> float:
+    """Peak to peak of the transmission error or of a translation [m]."""
     z, rates = system.gear_motion(states)
-    return {name: peak_to_peak(times, z @ v, rates @ v) for name, v in to.items()}
+    direction = system.structure.deflection if name == "dte" else np.eye(6)[COORDINATES.index(name)]
+    return peak_to_peak(times, z @ direction, rates @ direction)
 
 
 def _closure(system: LTVSystem, states: FloatArray) -> float:

@@ -6,6 +6,7 @@ Sources: docs/theory/equations.md, "Periodic motion and the brake torque"; docs/
 from __future__ import annotations
 
 from collections.abc import Collection
+from functools import partial
 from typing import TYPE_CHECKING
 
 from lumped.arguments import some_of, whole_number
@@ -15,11 +16,13 @@ from lumped.model.cycle_maps import linear_motion
 from lumped.model.equations import PRINTED_EQUATIONS
 from lumped.model.linear_or_unilateral import ContactArgument, MotionForm, motion_form
 from lumped.model.periodic_system import Supports, supports_of
-from lumped.model.revolution_motion import default_samples, labelled_motion
+from lumped.model.results import PlainMotion
+from lumped.model.revolution_motion import default_samples, plain_motion
 from lumped.model.solution import steady_cycle
 from lumped.model.unilateral_motion import unilateral_motion
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.meeting_teeth import period_of
+from lumped.schema.pair import GearPair
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -75,21 +78,31 @@ def steady_state(
         or one that settles too slowly
     """
     pair = load_gear_pair(pair)
+    return periodic_motion(pair, contact, supports, samples_per_cycle, as_printed).dataset
+
+
+def periodic_motion(
+    pair: GearPair,
+    contact: ContactArgument = "linear",
+    supports: Supports | None = None,
+    samples_per_cycle: int | None = None,
+    as_printed: Collection[int] = (),
+) -> PlainMotion:
+    """Return the motion of ``steady_state``, which has the same arguments and errors, as plain arrays."""
     form = motion_form(pair, contact)
     supports = supports_of(pair, supports)
     if samples_per_cycle is not None:
         samples_per_cycle = whole_number("samples_per_cycle", samples_per_cycle, 8, 65536)
     check_printed(pair, contact, as_printed)
     if form is MotionForm.LINEAR_LIKE_TEETH:
-        return steady_cycle(
-            pair, 512 if samples_per_cycle is None else samples_per_cycle, as_printed, supports
-        )
+        samples = 512 if samples_per_cycle is None else samples_per_cycle
+        return steady_cycle(pair, samples, as_printed, supports)
     count = default_samples(period_of(pair)) if samples_per_cycle is None else samples_per_cycle
     if form is MotionForm.LINEAR_OWN_TEETH:
         motion = linear_motion(pair, count, supports)
     else:
         motion = unilateral_motion(pair, count, supports)
-    return labelled_motion(motion, provenance(pair, samples_per_cycle=count, contact=contact))
+    return plain_motion(motion, partial(provenance, pair, samples_per_cycle=count, contact=contact))
 
 
 def check_printed(pair: AnyPair, contact: ContactArgument, as_printed: Collection[int]) -> None:

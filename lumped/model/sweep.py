@@ -21,9 +21,8 @@ from lumped.model.periodic_system import LTVSystem, Supports, supports_of
 from lumped.model.powers import balance
 from lumped.model.results import farthest_reversal, load_range
 from lumped.model.steady import periodic_solution, sample_times
-from lumped.model.steady_state import steady_state
+from lumped.model.steady_state import periodic_motion
 from lumped.path_of_contact import friction_path_function
-from lumped.quasi_static.elements import MeshElements
 from lumped.ranges import warned_once
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
@@ -151,14 +150,14 @@ def _linear_motions(pairs: Iterable[GearPair], supports: Supports, samples: int)
 def _motions(
     pairs: Iterable[GearPair], contact: ContactArgument, supports: Supports, samples: int
 ) -> Iterator[_Motion | None]:
-    """Yield the motions of `lumped.steady_state`; None at a speed without periodic motion."""
+    """Yield the motions of `periodic_motion`; None at a speed without periodic motion."""
     for pair in pairs:
         try:
-            result = steady_state(pair, contact=contact, supports=supports, samples_per_cycle=samples)
+            motion = periodic_motion(pair, contact, supports, samples)
         except NumericalError:
             yield None
             continue
-        yield {str(name): values.to_numpy() for name, values in result.data_vars.items()}, result.attrs
+        yield motion.values, motion.attributes
 
 
 def _label(name: str) -> tuple[str, str]:
@@ -175,15 +174,16 @@ def systems_over_speed(
 
     ``warn``: whether to warn at every speed of friction laws outside their range, or at the first speed only.
     """
-    elements: MeshElements | None = None
+    system: LTVSystem | None = None
     for pair in pairs:
-        g = pair.geometry
-        if elements is None:
-            elements = MeshCycle.of(pair).elements
+        if system is None:
+            system = LTVSystem.of(pair, "full", supports=supports)
         else:
+            elements = system.cycle.elements
             friction = friction_path_function(pair, interval=elements.stiffness.interval, warn=warn)
             elements = replace(elements, friction=friction)
-        yield LTVSystem.of(pair, "full", cycle=MeshCycle(g, elements), supports=supports)
+            system = system.at_speed(pair, MeshCycle(pair.geometry, elements))
+        yield system
 
 
 def _reversal(run: Mapping[str, FloatArray], pitch_point: float) -> float:

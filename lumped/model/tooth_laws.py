@@ -247,8 +247,9 @@ def _steps(laws: ToothLaws, largest_step: float, outputs: int, ends: FloatArray)
     marks = np.where(np.abs(marks - nearest) < _INSIDE, nearest, marks)
     marks = marks[np.diff(marks, prepend=-1.0) > _INSIDE]
     parts = np.maximum(1, np.ceil(np.diff(marks) / largest_step - 1e-9)).astype(np.int64)
-    pieces = zip(marks, marks[1:], parts, strict=False)
-    edges = np.concatenate([*(low + (high - low) * np.arange(n) / n for low, high, n in pieces), [1.0]])
+    number = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)
+    inside = np.repeat(np.diff(marks), parts) * number / np.repeat(parts, parts)
+    edges = np.append(np.repeat(marks[:-1], parts) + inside, 1.0)
     starts = np.zeros(edges.size - 1, dtype=np.int64)
     starts[np.searchsorted(edges, even[:-1] - _INSIDE)] = 1
     return _Steps(edges, starts)
@@ -338,6 +339,8 @@ def mesh_tables(
         slopes["stiffness"] = 0.0
         slopes["damping"] = 0.0
         slopes["mu"] = 0.0
+    unlike = laws.pair is not laws.healthy
+    no_shapes = np.zeros((*position.shape, 2), TOOTH)  # the numbers of like teeth are 0: no shape acts
     turning = laws.turning()
     angle = 2.0 * np.pi / turning["cycles"] * phase[..., None]
     pinion, gear = tooth_errors(laws.pair)
@@ -350,8 +353,8 @@ def mesh_tables(
         position=position,
         laws=np.stack([laws.of_kind(kind, position) for kind in kinds]),
         slopes=slopes,
-        shape=laws.shapes(position),
-        shape_slope=_slopes(laws.shapes, position, in_step, distance),
+        shape=laws.shapes(position) if unlike else no_shapes,
+        shape_slope=_slopes(laws.shapes, position, in_step, distance) if unlike else no_shapes,
         flanks=np.array([laws.ends(kind) for kind in kinds], FLANKS),
         coupling=_coupling(laws, position),
         kinds=laws.kinds,
@@ -365,4 +368,5 @@ def mesh_tables(
         duration=g.mesh_period,
         lengthening=laws.mesh.lengthening,
         law=laws.contact_law(),
+        alike=not unlike,
     )

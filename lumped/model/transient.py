@@ -17,10 +17,10 @@ from lumped.errors import NumericalError
 from lumped.labelling import provenance
 from lumped.model.cycle_maps import CycleSteps, linear_motion, linear_steps, loads_of, stepped_run
 from lumped.model.linear_or_unilateral import ContactArgument, MotionForm, motion_form
-from lumped.model.momentary_load import momentary_tables, run, steps_of
+from lumped.model.momentary_load import MomentaryRuns, momentary_tables, steps_of
 from lumped.model.periodic_system import LTVSystem, Supports, supports_of
 from lumped.model.propagation import step_maps
-from lumped.model.revolution_motion import RevolutionMotion, Touch, labelled_motion
+from lumped.model.revolution_motion import RevolutionMotion, Touch, plain_motion
 from lumped.model.solution import Initial, initial_state, transient
 from lumped.model.steady import periodic_solution, sample_times
 from lumped.model.steady_state import check_printed
@@ -94,7 +94,7 @@ def simulate(
     run_motion = motion(pair, cycles, samples, initial, supports, progress)
     if not np.isfinite(run_motion.states).all():
         raise NumericalError("The motion grows beyond all numbers: take fewer cycles, or a stable pair.")
-    return labelled_motion(run_motion, attributes, periodic=False)
+    return plain_motion(run_motion, lambda: attributes, periodic=False).dataset
 
 
 def _linear_run(
@@ -159,10 +159,11 @@ def _unilateral_run(
     state = initial_state(system, initial, steady)
     states = []
     loads = []
+    runs = MomentaryRuns(pair, system, steady.tables)
     # One cycle more gives the end of the last one.
     for first in range(0, cycles + 1, _BLOCK):
         count = min(_BLOCK, cycles + 1 - first)
-        block = run(pair, steady.tables, system, first, count, count, state, torques)
+        block = runs.run(first, count, count, state, torques)
         states.append(block.states)
         loads.append(block.loads)
         state = block.end

@@ -23,11 +23,10 @@ import numpy as np
 
 from lumped.errors import NumericalError
 from lumped.mesh.motion import Run
-from lumped.mesh.tables import MeshTables
 from lumped.model.momentary_load import (
+    MomentaryRuns,
     mean_powers,
     momentary_tables,
-    run,
     steps_of,
     without_drift,
 )
@@ -81,6 +80,8 @@ class Shooting:
     pair : gear pair with like teeth
     system : the "full" system of the pair
     laws : laws of the tooth pairs
+    fine : runs with the steps of the motion
+    coarse : runs with steps twice as long, for derivatives and for the error
     samples : outputs in a mesh cycle
     cycles : mesh cycles after which the motion shall repeat
     """
@@ -88,37 +89,29 @@ class Shooting:
     pair: GearPair
     system: LTVSystem
     laws: ToothLaws
+    fine: MomentaryRuns
+    coarse: MomentaryRuns
     samples: int
     cycles: int = 1
 
     @classmethod
     def of(cls, pair: GearPair, samples: int, supports: Supports) -> Self:
         """Return the search for a motion that repeats with every mesh cycle."""
-        return cls(pair, LTVSystem.of(pair, "full", supports=supports), ToothLaws(pair), samples)
+        return cls.of_laws(pair, LTVSystem.of(pair, "full", supports=supports), ToothLaws(pair), samples)
 
-    @cached_property
-    def step(self) -> float:
-        """Largest step of the integration, in mesh cycles."""
-        return 1.0 / steps_of(self.system)
+    @classmethod
+    def of_laws(cls, pair: GearPair, system: LTVSystem, laws: ToothLaws, samples: int) -> Self:
+        """Return the search with a "full" system and laws that need not be those of the pair."""
+        step = 1.0 / steps_of(system)
+        fine = MomentaryRuns(pair, system, momentary_tables(laws, system, step, samples))
+        outputs = samples // outputs_for_one(samples)
+        coarse = MomentaryRuns(pair, system, momentary_tables(laws, system, 2.0 * step, outputs))
+        return cls(pair, system, laws, fine, coarse, samples)
 
-    def tables_of(self, step: float, outputs: int) -> MeshTables:
-        """Tables of the contact with steps of at most so many mesh cycles, and so many outputs in a cycle."""
-        return momentary_tables(self.laws, self.system, step, outputs)._replace(period=self.cycles)
-
-    @cached_property
+    @property
     def every(self) -> int:
-        """Number of outputs of ``tables`` for one output of ``coarse``."""
-        return next((n for n in (2, 3, 5, 7) if self.samples % n == 0), self.samples)
-
-    @cached_property
-    def tables(self) -> MeshTables:
-        """Tables with the steps of the motion."""
-        return self.tables_of(self.step, self.samples)
-
-    @cached_property
-    def coarse(self) -> MeshTables:
-        """Tables with steps twice as long, for derivatives and for the error."""
-        return self.tables_of(2.0 * self.step, self.samples // self.every)
+        """Number of outputs of ``fine`` for one output of ``coarse``."""
+        return outputs_for_one(self.samples)
 
     @cached_property
     def to_relative(self) -> FloatArray:
@@ -151,13 +144,13 @@ class Shooting:
         )
 
     def run(
-        self, unknowns: FloatArray, tables: MeshTables, rate: float = 0.0, cycles: int = 0, recorded: int = 0
+        self, unknowns: FloatArray, runs: MomentaryRuns, rate: float = 0.0, cycles: int = 0, recorded: int = 0
     ) -> tuple[FloatArray, Run]:
         """Run over mesh cycles from unknowns; returns the state (2m,) at the start and the run.
 
         Parameters
         ----------
-        unknowns, tables : start, and tables with the steps
+        unknowns, runs : start, and the runs with their steps
         rate : rate of the common rotation at the start
         cycles, recorded : mesh cycles, and the last ones that are recorded; 0: as many as the motion has
         """
@@ -167,11 +160,11 @@ class Shooting:
         common = system.supports.common
         state = self.from_relative @ unknowns[:-1] + np.append(np.zeros(common.size), rate * common)
         count = cycles or self.cycles
-        return state, run(self.pair, tables, system, 0, count, recorded or count, state, torques)
+        return state, runs.run(0, count, recorded or count, state, torques)
 
-    def mismatch(self, unknowns: FloatArray, tables: MeshTables) -> tuple[FloatArray, Run]:
+    def mismatch(self, unknowns: FloatArray, runs: MomentaryRuns) -> tuple[FloatArray, Run]:
         """Change of state and weighted rate of the common rotation over the cycles; and the run."""
-        state, period_run = self.run(unknowns, tables)
+        state, period_run = self.run(unknowns, runs)
         change = period_run.end - state
         weights = self.system.supports.common_weights
         return np.append(self.to_relative @ change, weights @ change[weights.size :]), period_run
@@ -224,9 +217,9 @@ class Shooting:
         """
         sizes, of_mismatch = self.scales(unknowns)
 
-        def over(tables: MeshTables) -> Callable[[FloatArray], tuple[FloatArray, Run]]:
+        def over(runs: MomentaryRuns) -> Callable[[FloatArray], tuple[FloatArray, Run]]:
             def over_period(start: FloatArray) -> tuple[FloatArray, Run]:
-                mismatch, period_run = self.mismatch(start, tables)
+                mismatch, period_run = self.mismatch(start, runs)
                 return mismatch / of_mismatch, period_run
 
             return over_period
@@ -234,7 +227,7 @@ class Shooting:
         rough = close_period(over(self.coarse), unknowns, sizes, slopes, closed=_NEARLY_CLOSED)
         if rough.mismatch > _NEARLY_CLOSED:
             raise NumericalError("No periodic motion that follows the momentary load is near this one.")
-        fine = close_period(over(self.tables), rough.unknowns, sizes, rough.derivatives, closed=_CLOSED)
+        fine = close_period(over(self.fine), rough.unknowns, sizes, rough.derivatives, closed=_CLOSED)
         if fine.mismatch > _ACCEPTED:
             raise NumericalError("No periodic motion that follows the momentary load is near this one.")
         return fine
@@ -255,7 +248,7 @@ class Shooting:
         # Powers are those of the mean speed: the run starts with a common rate whose mean vanishes.
         change = closed.passed.end[:m] - closed.passed.states[0, :m]
         rate = float(weights @ change) / float(weights @ support.common) / (self.cycles * system.period)
-        final = self.run(closed.unknowns, self.tables, rate=-rate)[1]
+        final = self.run(closed.unknowns, self.fine, rate=-rate)[1]
         dte = final.states[:, :m] @ system.deflection
         coarse_dte = self.run(closed.unknowns, self.coarse)[1].states[:, :m] @ system.deflection
         driving, brake = self.torques(closed.unknowns)
@@ -263,8 +256,8 @@ class Shooting:
         return RevolutionMotion(
             pair=self.pair,
             system=system,
-            tables=self.tables,
-            touch=Touch.WINDOWS if self.tables.law.prescribed else Touch.MOMENTARY,
+            tables=self.fine.tables._replace(period=self.cycles),
+            touch=Touch.WINDOWS if self.fine.tables.law.prescribed else Touch.MOMENTARY,
             time=time,
             states=without_drift(system, time, final.states, final.end, self.cycles * system.period),
             load=final.loads,
@@ -303,10 +296,11 @@ class Shooting:
         compared = _COMPARED * _MOST_CYCLES
         deflection = self.system.deflection
         m = deflection.size
-        tables = self.tables_of(2.0 * self.step, _OUTPUTS)
+        tables = momentary_tables(self.laws, self.system, 2.0 / steps_of(self.system), _OUTPUTS)
+        runs = MomentaryRuns(self.pair, self.system, tables)
         for turn in range(_RUNS):
             cycles = (_SETTLING << turn) + compared
-            _, settling = self.run(unknowns, tables, cycles=cycles, recorded=compared)
+            _, settling = self.run(unknowns, runs, cycles=cycles, recorded=compared)
             if not np.isfinite(settling.end).all():
                 raise NumericalError("The motion with unilateral contact grows without bound.")
             starts = np.vstack([settling.states[::_OUTPUTS], settling.end]) @ self.to_relative.T
@@ -327,6 +321,11 @@ class Shooting:
             f"A run with unilateral contact has not come to a motion of at most {_MOST_CYCLES} mesh cycles: "
             "it beats, is chaotic, or is damped too little. Read its branches over speed: spurcheck response."
         )
+
+
+def outputs_for_one(samples: int) -> int:
+    """Number of outputs of the fine runs for one output of the coarse runs: the least divisor up to 7."""
+    return next((n for n in (2, 3, 5, 7) if samples % n == 0), samples)
 
 
 def unilateral_motion(
@@ -352,7 +351,16 @@ def unilateral_motion(
     """
     if pair.healthy is not pair:
         return settled_motion(pair, samples, supports)
-    shooting = Shooting.of(pair, samples, supports)
+    return motion_of_shooting(Shooting.of(pair, samples, supports), settles=settles)
+
+
+def motion_of_shooting(shooting: Shooting, *, settles: bool = True) -> RevolutionMotion:
+    """Periodic motion of like teeth by ``shooting`` from its linear motion, see ``unilateral_motion``.
+
+    Raises
+    ------
+    NumericalError : no such motion is found
+    """
     try:
         linear = periodic_solution(shooting.system, np.zeros(1), estimate_error=False)
     except NumericalError:  # a multiplier at +1
@@ -405,7 +413,8 @@ def settled_motion(
         tables = momentary_tables(laws, system, part / steps, samples)
         torques = driving * system.torque_pinion + brake * system.torque_gear
         count = settling + tables.period
-        last_run = run(pair, tables, system, -settling, count, tables.period, state, torques)
+        runs = MomentaryRuns(pair, system, tables)
+        last_run = runs.run(-settling, count, tables.period, state, torques)
         states = last_run.states
         end = last_run.end
         if not np.isfinite(end).all():
@@ -457,7 +466,8 @@ def _drift_of_twin(twin: RevolutionMotion, step: float) -> float:
     tables = momentary_tables(ToothLaws(twin.pair), system, step, int(twin.tables.outputs.sum()))
     torques = twin.pinion_torque * system.torque_pinion + twin.brake_torque * system.torque_gear
     settling = _settling(twin.spectral_radius)
-    cycle = run(twin.pair, tables, system, -settling, settling + 1, 1, twin.states[0], torques)
+    runs = MomentaryRuns(twin.pair, system, tables)
+    cycle = runs.run(-settling, settling + 1, 1, twin.states[0], torques)
     return float(weights @ (cycle.end - cycle.states[0])[weights.size :]) / system.period
 
 

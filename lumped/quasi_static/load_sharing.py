@@ -111,10 +111,11 @@ def coupled(neighbours: Sequence[PathFunction], place: FloatArray, near: BoolArr
     """
     pairs = place.shape[1]
     coupling = np.zeros((*place.shape, pairs))
+    entries = coupling.reshape(-1, pairs * pairs)  # entry i * pairs + j is w_ij
     for apart, compliance in enumerate(neighbours, 1):
         if apart < pairs:
             both = near[:, :-apart] & near[:, apart:]
-            behind = np.arange(pairs - apart)
             values = np.where(both, compliance(place[:, :-apart]), 0.0)
-            coupling[:, behind, behind + apart] = coupling[:, behind + apart, behind] = values
+            entries[:, apart : (pairs - apart) * pairs : pairs + 1] = values
+            entries[:, apart * pairs :: pairs + 1] = values
     return coupling

@@ -28,7 +28,7 @@ from lumped.path_of_contact import friction_path_function, pair_stiffness
 from lumped.path_of_contact.stiffness import contact_softening, cross_compliances
 from lumped.quasi_static.elements import Contact, MeshElements, at_rest, positive_intervals, restricted
 from lumped.quasi_static.load_sharing import coupled
-from lumped.quasi_static.tooth_error import relief_error, relief_starts
+from lumped.quasi_static.tooth_error import relief_starts, reliefs_of, sum_of
 from lumped.schema.bodies import bodies_of
 from lumped.schema.pair import GearPair
 from lumped.typing import BoolArray, FloatArray
@@ -243,6 +243,7 @@ class StaticMesh:
         self.flanks = np.array([(*tips, g.L_XY, *edges, 0.0, 0.0)], FLANKS)
         self.low = g.L_XA - _REACH * g.base_pitch
         self.high = g.L_XD + _REACH * g.base_pitch
+        self.reliefs = reliefs_of(pair) if pair.mesh.relief == "static" else []
         self._fitted: PathFunction | None = None
 
     def relief(self, place: FloatArray) -> FloatArray:
@@ -250,9 +251,7 @@ class StaticMesh:
 
         Beyond A and D the value at A or D [m].
         """
-        if self.pair.mesh.relief != "static":
-            return np.zeros(place.shape)
-        return relief_error(self.pair, np.clip(place, self.geometry.L_XA, self.geometry.L_XD))
+        return sum_of(self.reliefs, np.clip(place, self.geometry.L_XA, self.geometry.L_XD))
 
     def pairs(self, xi: FloatArray) -> tuple[FloatArray, BoolArray]:
         """Positions (n, pairs) [m] of all pairs around a pair at xi (n,), and which pairs are computed."""

@@ -9,6 +9,7 @@ Sources: docs/theory/mesh_physics.md, "Load sharing and static transmission erro
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -36,8 +37,13 @@ def flank_relief(relief: ProfileRelief, end: float, roll: FloatArray) -> FloatAr
 
 def relief_error(pair: GearPair, xi: FloatArray) -> FloatArray:
     """Sum of the reliefs of both flanks at positions xi of any shape [m]."""
+    return sum_of(reliefs_of(pair), xi)
+
+
+def sum_of(reliefs: Sequence[PlacedRelief], xi: FloatArray) -> FloatArray:
+    """Sum of some reliefs of ``reliefs_of`` at positions xi of any shape [m]."""
     total = np.zeros(np.shape(xi))
-    for relief in _reliefs(pair):
+    for relief in reliefs:
         total = total + relief(np.asarray(xi, dtype=float))
     return total
 
@@ -59,7 +65,7 @@ def relief_starts(pair: GearPair) -> FloatArray:
     """Positions strictly between A and D where a relief starts, increasing [m]."""
     low = pair.geometry.L_XA
     high = pair.geometry.L_XD
-    starts = np.array([relief.start for relief in _reliefs(pair)])
+    starts = np.array([relief.start for relief in reliefs_of(pair)])
     return np.asarray(np.unique(starts[(starts > low) & (starts < high)]), dtype=np.float64)
 
 
@@ -86,7 +92,7 @@ def corner_gap(geometry: Geometry, xi: FloatArray) -> FloatArray:
 
 
 @dataclass(frozen=True)
-class _Relief:
+class PlacedRelief:
     """One relief of the pair, seen over xi."""
 
     relief: ProfileRelief
@@ -104,7 +110,8 @@ class _Relief:
         return self.origin + self.sense * self.relief.start_roll_angle * self.radius
 
 
-def _reliefs(pair: GearPair) -> list[_Relief]:
+def reliefs_of(pair: GearPair) -> list[PlacedRelief]:
+    """Return the reliefs of both flanks, placed on the path of contact."""
     g = pair.geometry
     sides = (
         ("pinion", pair.pinion, g.base_radius_pinion, g.tip_length_pinion, g.L_XA, 0.0, 1.0),
@@ -117,5 +124,5 @@ def _reliefs(pair: GearPair) -> list[_Relief]:
                 continue
             if not root < relief.start_roll_angle * radius < tip:
                 raise relief.off(pair.flank(int(gear_name == "gear")), f"{gear_name}.{name}_relief")
-            reliefs.append(_Relief(relief, end / radius, radius, origin, sense))
+            reliefs.append(PlacedRelief(relief, end / radius, radius, origin, sense))
     return reliefs

@@ -7,7 +7,7 @@ too. Text in ``[sources]`` decides nothing.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from enum import Enum
 from functools import lru_cache
 from typing import Annotated, Any
@@ -65,10 +65,8 @@ class Assumed(Mapping[str, Value]):
 
     def without(self, *paths: str) -> Assumed:
         """Return the record without the fields and sections ``paths``."""
-        remaining = {
-            path: value for path, value in self.items() if not any(within(path, one) for one in paths)
-        }
-        return self if len(remaining) == len(self) else Assumed(remaining)
+        gone = set(inside_any(self, paths))
+        return Assumed({path: one for path, one in self.items() if path not in gone}) if gone else self
 
     def to_mapping(self) -> dict[str, Any]:
         """Return plain data for a file."""
@@ -78,6 +76,13 @@ class Assumed(Mapping[str, Value]):
 def within(path: str, section: str) -> bool:
     """Whether a path is the path of a field or section, or of a field inside the section."""
     return path == section or path.startswith(f"{section}.")
+
+
+def inside_any(paths: Iterable[str], sections: Sequence[str]) -> list[str]:
+    """Return the paths that are ``within`` any of the fields or sections."""
+    exact = frozenset(sections)
+    starts = tuple(f"{section}." for section in sections)
+    return [path for path in paths if path in exact or path.startswith(starts)]
 
 
 def _parsed(table: object) -> Assumed:

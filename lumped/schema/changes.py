@@ -13,7 +13,7 @@ from lumped.errors import ParameterError, quoted, refuse
 from lumped.fields.refusals import field_of, unknown_key
 from lumped.fields.scope import about_teeth
 from lumped.fields.section import Section
-from lumped.schema.assumed import ABOUT, WORDS, within
+from lumped.schema.assumed import ABOUT, WORDS, inside_any, within
 from lumped.schema.bearings import ROLLING, STIFFNESSES, RollingBearing
 from lumped.schema.contact import Mesh, without_assumed_defaults
 from lumped.schema.oil_grade import grade_of
@@ -110,7 +110,7 @@ def changed(pair: Section, changes: Mapping[str, Any]) -> dict[str, Any]:
     # The model first: it decides which other keys its table may have.
     for path, request in sorted(changes.items(), key=lambda change: change[0] != _STIFFNESS):
         value = request.item() if isinstance(request, np.generic) else request
-        if _reads(pair, path, value) and not any(within(one, path) for one in assumed):
+        if _reads(pair, path, value) and not inside_any(assumed, [path]):
             continue
         outdated = [path]
         if path == _STIFFNESS:
@@ -124,7 +124,7 @@ def changed(pair: Section, changes: Mapping[str, Any]) -> dict[str, Any]:
                         _assign(type(pair), data, other, None)
         _assign(type(pair), data, path, value)
         for table in (sources, assumed):
-            for one in [key for key in table if any(within(key, p) for p in outdated)]:
+            for one in inside_any(table, outdated):
                 del table[one]
         if path not in (*WORDS, *ABOUT) and value is not None:
             sources[path] = "varied by the user"

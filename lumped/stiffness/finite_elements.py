@@ -14,12 +14,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from pydantic import Field
 
-from lumped.elasticity.gear import COARSE, FlankCompliance, PlaneGear, flank_compliance
 from lumped.errors import refuse
 from lumped.gear_geometry.geometry import Wheel
 from lumped.path_function import PathFunction
@@ -29,6 +28,9 @@ from lumped.stiffness.energy import weber_banaschek_softening
 from lumped.stiffness.foundation import thin_rims
 from lumped.stiffness.neighbours import REACH, coupled_pairs
 from lumped.typing import FloatArray
+
+if TYPE_CHECKING:
+    from lumped.elasticity.gear import FlankCompliance, PlaneGear
 
 Plane = Literal["stress", "strain"]
 Support = Literal["free", "clamped", "untwisted"]
@@ -51,6 +53,8 @@ class ElasticTooth:
     @property
     def flank(self) -> FlankCompliance:
         """Compliances of the flanks, by plane finite elements."""
+        from lumped.elasticity.gear import flank_compliance
+
         return flank_compliance(self.body)
 
     @property
@@ -88,6 +92,8 @@ def elastic_teeth(
     "free", "clamped" at the bore (refused without one), or "untwisted", clamped and less the twist of the
     ring; ``bore`` is root over bore radius of both gears, in the place of their own.
     """
+    from lumped.elasticity.gear import PlaneGear
+
     apart = math.floor(pair.geometry.contact_ratio + 2.0 * REACH)
     result = []
     for name, wheel, material in zip(("pinion", "gear"), pair.wheels, (pair.pinion, pair.gear), strict=True):
@@ -153,6 +159,8 @@ def cross_compliance(
 
 def pair_error(pair: MeshingPair, teeth: tuple[ElasticTooth, ElasticTooth], xi: FloatArray) -> FloatArray:
     """Share of ``self_compliance`` by which a coarser mesh differs, at positions xi of any shape [-]."""
+    from lumped.elasticity.gear import COARSE, flank_compliance
+
     g = pair.geometry
     difference = np.zeros(np.shape(xi))
     for tooth, length in zip(teeth, (xi, g.L_XY - xi), strict=True):

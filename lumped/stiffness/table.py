@@ -5,12 +5,11 @@ Sources: monotone piecewise cubics, Fritsch and Carlson, SIAM Journal on Numeric
 
 from __future__ import annotations
 
-from typing import Any, Literal, Self
+from typing import TYPE_CHECKING, Any, Literal, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 from pydantic import Field, ValidationInfo, model_validator
-from scipy.interpolate import PPoly
 
 from lumped.errors import NumericalError, ParameterError, refuse
 from lumped.fields.tables import check_points, positions, spline, uncovered, with_file
@@ -25,6 +24,9 @@ from lumped.stiffness.base import (
 )
 from lumped.stiffness.energy import READS, energy_curve
 from lumped.typing import FloatArray
+
+if TYPE_CHECKING:
+    from scipy.interpolate import PPoly
 
 #: Name and unit of the column in a file.
 STIFFNESS = ("stiffness", "N/m")

@@ -359,8 +359,7 @@ def time_to_event(
     contacts = contacts_of(flat_contacts)
     count = 0
     state = np.empty((3, 6))
-    state[COORDINATES] = q
-    state[RATES] = v
+    continued(state, q, v, a, 0.0)
     if coupled:
         count = contact_forces(t, state, packed, flags, flat_contacts)
     shortest, number = nearest_event(t, state, machine, flags, events, Neighbours(contacts, count))

@@ -416,7 +416,7 @@ def add_side(
     return written
 
 
-@compiled
+@compiled(no_cpython_wrapper=True)
 def contact_forces(
     t: float, state: FloatArray, packed: FloatArray, flags: int, flat_contacts: FloatArray
 ) -> int:
@@ -516,13 +516,13 @@ def tooth_forces_over(
 
     A loop in Python: a kernel would compile for a second.
     """
-    wrenches = np.empty((times.size, 6))
-    counts = np.empty(times.size, np.int64)
+    states = np.empty((times.size, 3, 6))
+    states[:, COORDINATES] = q[:, :6]
+    states[:, RATES] = v[:, :6]
     flat_contacts = np.zeros((times.size, CONTACTS_SIZE))
-    state = np.empty((3, 6))
-    for i, t in enumerate(times.tolist()):
-        state[COORDINATES] = q[i, :6]
-        state[RATES] = v[i, :6]
-        counts[i] = tooth_forces(t, state, packed, flags, flat_contacts[i])
-        wrenches[i] = state[WRENCH]
-    return ContactStates(wrenches, opened_contacts(flat_contacts), counts)
+    counts = [
+        tooth_forces(t, state, packed, flags, contacts)
+        for t, state, contacts in zip(times.tolist(), states, flat_contacts, strict=True)
+    ]
+    wrenches = states[:, WRENCH].copy()
+    return ContactStates(wrenches, opened_contacts(flat_contacts), np.array(counts, np.int64))

@@ -169,6 +169,13 @@ def set_rates(stages: Stages, stage: int, state: FloatArray, bodies: Records) ->
 
 
 @called
+def copy_row(source: FloatArray, target: FloatArray) -> None:
+    """Copy a row of six values. For an assignment of rows numba would compile the text of an error."""
+    for i in range(6):
+        target[i] = source[i]
+
+
+@called
 def step_error(stages: Stages, h: float, state: FloatArray, rule: StepRule) -> float:
     """Largest error of a step of length h [s] that ends in ``state``, over the error that is allowed."""
     row = rule.tableau[_ERROR]
@@ -226,8 +233,8 @@ def bridge(
         h = remaining / equal_steps
         q = states[COORDINATES, start]
         v = states[RATES, start]
-        stages.velocity[0] = v
-        stages.acceleration[0] = states[_ACCELERATIONS, start]
+        copy_row(v, stages.velocity[0])
+        copy_row(states[_ACCELERATIONS, start], stages.acceleration[0])
         for stage in range(_LAST_STAGE):
             stage_state(state, q, v, h, rule.tableau[stage], stage + 1, stages)
             calls += 1
@@ -235,9 +242,9 @@ def bridge(
             if tooth_forces(t, state, model.packed, model.flags, contacts) < 0:
                 return Bridged(rows, step, calls)
             set_rates(stages, stage + 1, state, model.bodies)
-        states[COORDINATES, rows] = state[COORDINATES]
-        states[RATES, rows] = state[RATES]
-        states[_ACCELERATIONS, rows] = stages.acceleration[_LAST_STAGE]
+        copy_row(state[COORDINATES], states[COORDINATES, rows])
+        copy_row(state[RATES], states[RATES, rows])
+        copy_row(stages.acceleration[_LAST_STAGE], states[_ACCELERATIONS, rows])
         error = step_error(stages, h, state, rule)
         change = step_change(error)
         if error <= 1.0:

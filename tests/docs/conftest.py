@@ -11,7 +11,7 @@ ROOT = Path(__file__).resolve().parents[2]
 #: Written by people; what the build writes is checked by the build.
 PAGES = sorted(
     path
-    for path in (*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md"), *ROOT.glob("examples/*.md"))
+    for path in (*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md"), *ROOT.glob("examples/**/*.md"))
     if not {"_generated", "gallery"} & set(path.relative_to(ROOT).parts)
 )
 _FENCE = re.compile(r"^```([\w-]+)[^\n]*\n(.*?)^```$", re.MULTILINE | re.DOTALL)

@@ -10,19 +10,20 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import scipy.io
 import yaml
 from typer.main import get_command
 from typer.testing import CliRunner
 
 import lumped
-from tests.validation.measurements.synthetic import synthetic_measurement, write_measurement
+from tests.docs.own_models import write_own_models, write_record
+from validation.check.reading.description import described
 from validation.cli import app
 from validation.commands import response
 from validation.cross_check import comparison
 from validation.exchange import write_results, write_rexs, write_state_space
 from validation.interactive import write_interactive_page
 from validation.interactive.results import Sampling
-from validation.measurements import MeasurementSpec, predict
 
 #: Commands that take longer than a few seconds or need a cluster: only their arguments are checked. That
 #: reports are written and compared is tested in tests/validation.
@@ -80,7 +81,8 @@ def belongings(tmp_path_factory, root, blocks) -> Path:
     )  # a pair that the cross-check confirms
     write_state_space(pair, folder / "averaged.npz")
     np.savez(folder / "rotor.npz", M=1.0, C=0.1, K=100.0, K_cos_1=0.1, period=0.2)
-    write_measurement(synthetic_measurement(predict(pair), seed=1, engagements=2, start=0.37), folder)
+    write_record(pair, folder)
+    write_own_models(pair, folder)
     (folder / "study-sweep").mkdir()
     for result in ("run.nc", "study-sweep/results.nc"):
         write_results(lumped.simulate(pair, cycles=1), folder / result)
@@ -98,6 +100,11 @@ def done() -> set[str]:
 #: Files that a page says it writes, and a number that it says it prints.
 SAID = {"docs/tutorial/in_python.md": ({"steady.png", "chart.png", "waterfall.png"}, "4875.0")}
 
+#: Pages on checks: each line of a block of text is the beginning of an answer that is printed.
+CHECKS = (
+    "check_your_model.md", "check_matlab.md", "check_multibody.md", "check_ross.md", "check_statespace.md",
+)  # fmt: skip
+
 
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::lumped.LawRangeWarning")
@@ -111,16 +118,27 @@ def test_a_page_works_from_top_to_bottom(page, blocks, root, tmp_path, monkeypat
     monkeypatch.setattr(response, "_LINEAR_SPEEDS", 9)
     # The variant is judged in tests/validation/cross_check.
     monkeypatch.setitem(comparison.crosscheck.__kwdefaults__, "variant", False)
+    monkeypatch.syspath_prepend(tmp_path)
     session: dict[str, object] = {}
+    printed = ""
     for block in blocks(page):
         if block.language == "sh":
-            for line in block.commands:
-                run(line, root, done)
+            printed += "".join(run(line, root, done) for line in block.commands)
         elif block.language == "python":
             exec(compile(block.text, str(page), "exec"), session)
+        elif block.language == "toml" and (name := re.match(r"# (\w+\.toml)\n", block.text)):
+            Path(name[1]).write_text(block.text)
+    printed += capsys.readouterr().out
     files, number = SAID.get(page.relative_to(root).as_posix(), (set(), ""))
     assert files <= {path.name for path in tmp_path.iterdir()}
-    assert number in capsys.readouterr().out
+    assert number in printed
+    if page.name in CHECKS:
+        answers = [
+            line for block in blocks(page) if block.language == "text" for line in block.text.splitlines()
+        ]
+        words = " ".join(printed.replace("\u00a0", " ").split())
+        assert answers
+        assert [answer for answer in answers if answer not in words] == []
 
 
 def shortened(arguments: list[str]) -> list[str]:
@@ -131,6 +149,7 @@ def shortened(arguments: list[str]) -> list[str]:
     """
     quicker = {"crosscheck": ["--cycles", "8", "--samples", "64"], "sweep": ["--workers", "0"]}
     quicker["uncertainty"] = quicker["compare"] = ["--samples", "16"]
+    quicker["check"] = ["--budget", "2"]
     quicker["response"] = ["--periods", "1", "--seeds", "0", "--speeds", "3", "--range", "12000..12100"]
     most = 2 if arguments[0] in ("response", "floquet") else 5
     arguments = [
@@ -146,21 +165,23 @@ def shortened(arguments: list[str]) -> list[str]:
     return arguments + [word for word in extra if extra[0] not in arguments]
 
 
-def run(line: str, root: Path, done: set[str]) -> None:
-    """Run one line; what is not the program's own is checked as far as this machine allows."""
+def run(line: str, root: Path, done: set[str]) -> str:
+    """Run one line and return its output; what is not the program's own is checked as far as possible."""
     program, *arguments = shlex.split(line)
     if program == "spurcheck":
         parsed(line)
         same = line.replace("mypair.toml", "nasa_28_28 --set mesh.relief=ignored")
         if NOT_RUN.search(line) or same in done:
-            return
+            return ""
         if arguments[0] == "crosscheck":
             done.add(same)
         force = ["--force"] if arguments[0] in ("init", "simulate", "stability", "floquet", "export") else []
         result = CliRunner().invoke(app, shortened(arguments) + force)
         # 4: the models differ, a finding about the model.
-        expected = (2,) if REFUSED.search(line) else (0, 4) if arguments[0] == "crosscheck" else (0,)
+        differ = arguments[0] in ("crosscheck", "check")
+        expected = (2,) if REFUSED.search(line) else (0, 4) if differ else (0,)
         assert result.exit_code in expected, f"{line}\n{result.output}\n{result.exception!r}"
+        return result.output
     elif program == "make":
         subprocess.run(["make", "-n", *arguments], cwd=root, check=True, capture_output=True)
     elif program in ("python", "python3", "pytest"):
@@ -171,6 +192,7 @@ def run(line: str, root: Path, done: set[str]) -> None:
     else:
         known = (".", "export", "git", "pip", "ruff", "mypy", ".ci/run")
         assert program in known, f"nobody checks {line!r}"
+    return ""
 
 
 def test_the_stiffness_table_of_the_guide_is_read(blocks, root, tmp_path):
@@ -209,8 +231,15 @@ def test_the_table_of_the_guide_is_what_its_lines_print(blocks, root, tmp_path, 
 def test_the_record_of_the_guide_is_valid(blocks, root):
     page = blocks(root / "docs/how_to/measured_data.md")
     (text,) = (b.text for b in page if b.language == "toml")
-    spec = MeasurementSpec.model_validate(tomllib.loads(text))
-    assert spec.channel[0].quantity == "normal_load"
+    assert described(tomllib.loads(text), "page").channel[0].quantity == "normal_load"
+
+
+def test_the_variables_that_matlab_saves_are_those_of_the_file_that_is_checked(blocks, root, belongings):
+    page = [b.text for b in blocks(root / "docs/how_to/check_matlab.md") if b.language == "matlab"]
+    saved = [re.findall(r"'(\w[\w ]*)'", line) for text in page for line in re.findall(r"save\((.*)\)", text)]
+    names = [name for name, _, _ in scipy.io.whosmat(belongings / "model.mat")]
+    assert sorted(saved[0]) == sorted(names)
+    assert scipy.io.whosmat(belongings / "simulink.mat")[0][0] in saved[1]
 
 
 def test_the_design_of_the_guide_is_valid(blocks, root):

@@ -14,6 +14,7 @@ from computed.markdown import CheckFailed, must_pass, table
 from computed.mutants import mutants
 from computed.schema import parameters
 from docutils import nodes
+from extensions import gallery
 from extensions.docstrings import rewritten
 from extensions.mathml import mathml
 from extensions.scripts import pieces
@@ -110,3 +111,14 @@ def test_every_equation_has_mathml(page):
 def test_the_parameter_reference_states_unit_range_and_default():
     rows = [line for line in parameters().splitlines() if line.startswith("| `pinion_speed`")]
     assert rows == ["| `pinion_speed` | nominal speed of the pinion | rpm | > 0, ≤ 200000 | required |"]
+
+
+def test_a_folder_inside_examples_is_no_section_of_the_gallery(root, monkeypatch):
+    from sphinx_gallery import gen_gallery
+
+    monkeypatch.setattr(gen_gallery, "get_subsections", gen_gallery.get_subsections)
+    settings = {"subsection_order": None, "copyfile_regex": "", "source_suffix": {".rst": "", ".md": ""}}
+    arguments = (root / "docs", root / "examples", settings)
+    assert gen_gallery.get_subsections(*arguments) == ["check_in_ci"]  # it has a README.md
+    gallery.setup(None)
+    assert gen_gallery.get_subsections(*arguments) == []

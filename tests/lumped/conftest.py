@@ -113,7 +113,8 @@ def written_out():
         e = elements.error
         e_slope = e.slope
         th_p, th_g, x_p, x_g, y_p, y_g, dth_p, dth_g, dx_p, dx_g, dy_p, dy_g = state
-        r_bp, r_bg = geometry.base_radius_pinion, geometry.base_radius_gear
+        r_bp = geometry.base_radius_pinion
+        r_bg = geometry.base_radius_gear
         lam = geometry.base_pitch
         omega = geometry.omega_pinion
         delta = r_bp * th_p - r_bg * th_g + x_p - x_g
@@ -133,21 +134,21 @@ def written_out():
             sum_gf += (geometry.L_XY - xi) * force
         m_p, m_g, j_p, j_g = masses
 
-        def held(gear, way, mass, x, rate):
+        def support_force(gear, direction, mass, x, rate):
             """Force of a bearing on its gear."""
             b = getattr(pair.bearings, gear)
-            stiffness = getattr(b, f"{way}_stiffness")
-            ratio = getattr(b, f"{way}_damping_ratio")
+            stiffness = getattr(b, f"{direction}_stiffness")
+            ratio = getattr(b, f"{direction}_damping_ratio")
             return -2 * ratio * math.sqrt(stiffness * mass) * rate - stiffness * x
 
         return np.array(
             [
                 (torque - r_bp * sum_n - sum_pf) / j_p,
                 (-brake + r_bg * sum_n + sum_gf) / j_g,
-                (held("pinion", "loa", m_p, x_p, dx_p) - sum_n) / m_p,
-                (held("gear", "loa", m_g, x_g, dx_g) + sum_n) / m_g,
-                (held("pinion", "oloa", m_p, y_p, dy_p) + sum_f) / m_p,
-                (held("gear", "oloa", m_g, y_g, dy_g) - sum_f) / m_g,
+                (support_force("pinion", "loa", m_p, x_p, dx_p) - sum_n) / m_p,
+                (support_force("gear", "loa", m_g, x_g, dx_g) + sum_n) / m_g,
+                (support_force("pinion", "oloa", m_p, y_p, dy_p) + sum_f) / m_p,
+                (support_force("gear", "oloa", m_g, y_g, dy_g) - sum_f) / m_g,
             ]
         )
 

@@ -24,8 +24,8 @@ def test_both_ends(law, quantity):
         if end is not None:
             step = 1e-9 * (abs(end) or 1.0)
             assert range_violations("law", (limits,), {quantity: [end, end - out * step]}) == ()
-            (found,) = range_violations("law", (limits,), {quantity: [end, end + out * step]})
-            assert found.share == 0.5
+            (violation,) = range_violations("law", (limits,), {quantity: [end, end + out * step]})
+            assert violation.share == 0.5
 
 
 def test_what_no_law_can_take():

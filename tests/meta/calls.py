@@ -19,7 +19,7 @@ import lumped
 import validation
 from lumped.model.periodic_system import LTVSystem, without_shafts
 from tests.meta.test_public_names import FUNCTIONS
-from tests.validation.records.tooth_forces import tooth_force_record
+from tests.validation.check.record.tooth_forces import tooth_force_record
 from validation import exchange, studies
 from validation.check import check
 from validation.check.reference import lumped_motion
@@ -125,7 +125,6 @@ def _of(name, *arguments, **fixed):
 #: Function -> how the pair is varied first.
 CHANGES = {
     "floquet.stability_boundaries": {"mesh.damping_ratio": 0.0},
-    "validation.exchange.compare_matrices": {"friction.law": "none"},  # as the function itself does
     "validation.compare": {"uncertainty": {"mesh.damping_ratio": "+- 10 %"}},
     "validation.uncertainty": {"uncertainty": {"mesh.damping_ratio": "+- 10 %"}},
 }
@@ -157,9 +156,6 @@ COMPUTED = {
         **held,
     ),
     "validation.uncertainty": _of("validation.uncertainty", 16),
-    "validation.exchange.compare_matrices": _of(
-        "validation.exchange.compare_matrices", np.eye(2), 1e9 * np.array([[2.0, -1.0], [-1.0, 1.0]])
-    ),
     "validation.check.check": lambda pair, folder, **held: check(pair, _record(pair), explain=False, **held),
     "validation.studies.run_sweep": _study,
 }

@@ -11,8 +11,8 @@ PACKAGES = ("lumped", "multibody", "floquet", "validation")
 #: Files that every folder of a package may need; everything else has a folder.
 LOOSE = {
     "lumped": {"arguments", "cache", "compiler", "errors", "gauss_legendre", "kernel_stamps", "labelling",
-     "linked_code", "outcomes", "path_function", "ranges", "typing"},
-    "validation": {"stop_signals", "cli"},
+     "linked_code", "outcomes", "path_function", "path_values", "ranges", "root_in_bracket", "typing"},
+    "validation": {"stop_signals", "cli", "pytest_plugin"},
 }  # fmt: skip
 #: Folders of tests that belong to no single package.
 QUESTIONS = {"meta", "packaging", "docs", "examples", "hardening", "evidence", "reproductions",

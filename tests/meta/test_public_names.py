@@ -17,7 +17,7 @@ PACKAGES = ("lumped", "multibody", "floquet", "validation")
 BOOKKEEPING = re.compile(
     r"lumped\.(errors|schema\.(assumed|pair|files))"
     r"|floquet\.engine\.chart"
-    r"|validation\.(files|exchange|studies|plots|reporting|commands|interactive|measurements\.record)\b.*"
+    r"|validation\.(files|exchange|studies|plots|reporting|commands|interactive|check|reference_cases)\b.*"
     r"|validation\.verification\.(checks|evidence)"
 )
 SOURCE = re.compile(r"\beqs?\. |\bISO\b|\b(18|19|20)\d\d\b|docs/theory/\w+\.md")

@@ -156,9 +156,9 @@ REFUSED_COMMANDS = {
     "stability": ["--tongues"],
 }
 #: Commands whose function is in the tables above, and is called with the option.
-BY_FUNCTION = {"report", "uncertainty", "compare", "teeth"}
+BY_FUNCTION = {"check", "compare", "report", "teeth", "uncertainty"}
 #: Commands in which supports do not enter, or are in the file.
-WITHOUT_COMMANDS = {"floquet", "init", "presets", "sweep"}
+WITHOUT_COMMANDS = {"floquet", "init", "presets", "reference", "sweep"}
 
 
 def _options():

@@ -24,7 +24,8 @@ class Teeth:
 def make_teeth(zp, zg, module, alpha_deg, centre_distance, tip_p, tip_g, shifts=(0.0, 0.0), thinning=1e-4):
     """Flank 0 of both gears starts at body angle 0 (chi = 0 on the drive side)."""
     alpha = math.radians(alpha_deg)
-    rp, rg = 0.5 * module * zp * math.cos(alpha), 0.5 * module * zg * math.cos(alpha)
+    rp = 0.5 * module * zp * math.cos(alpha)
+    rg = 0.5 * module * zg * math.cos(alpha)
     inv = math.tan(alpha) - alpha
     thick = [
         module * math.cos(alpha) * (math.pi / 2 + 2 * x * math.tan(alpha)) + 2 * r * inv - thinning / 2

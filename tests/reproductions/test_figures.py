@@ -18,7 +18,7 @@ from reproductions.he_cho_singh_2008.figures.figure7 import measured_points
 from reproductions.he_cho_singh_2008.operating_points import FIGURE_4, FIGURE_7
 from reproductions.he_cho_singh_2008.records import ClaimsTable, ErrataChapter, FigureRecord
 from reproductions.he_cho_singh_2008.twins import agreement
-from tests.validation.records.tooth_forces import tooth_force_record
+from tests.validation.check.record.tooth_forces import tooth_force_record
 from validation.check.motion_curves import MotionCurves
 
 

@@ -13,12 +13,12 @@ def pair():
 
 
 @pytest.fixture(scope="session")
-def told():
-    """Fractions that the shared cross-check told."""
+def fractions():
+    """Fractions of progress that the shared cross-check announced."""
     return []
 
 
 @pytest.fixture(scope="session")
-def check(pair, told):
+def check(pair, fractions):
     """Cross-check of the default pair, shared because it is only read."""
-    return crosscheck(pair, cycles=24, samples_per_cycle=128, progress=lambda f, _="", /: told.append(f))
+    return crosscheck(pair, cycles=24, samples_per_cycle=128, progress=lambda f, _="", /: fractions.append(f))

@@ -16,7 +16,7 @@ import numpy as np
 
 from lumped.arguments import real_number
 from lumped.errors import NumericalError, refuse
-from lumped.labelling import labelled_dataset, provenance
+from lumped.labelling import labelled_dataset
 from lumped.model.averaged import natural_frequencies
 from lumped.model.periodic_system import Supports, with_supports
 from lumped.schema.files import AnyPair, load_gear_pair
@@ -26,6 +26,7 @@ from validation.check.ladder import Explanation, Ladder, climb
 from validation.check.mesh_frequency import SAME
 from validation.check.misfit import LIMIT, Misfit
 from validation.check.motion_curves import MotionCurves
+from validation.check.origin import origin
 from validation.check.over_speed import SpeedMisfit, speed_misfit
 from validation.check.overlay import figure_data
 from validation.check.problem import Problem
@@ -33,7 +34,15 @@ from validation.check.reading.other_model import OtherModel, other_model
 from validation.check.reading.reader import read
 from validation.check.reference import lumped_motion, multibody_motion
 from validation.check.static import StaticRung, static_rung
-from validation.check.words import differs_words, percent, subject
+from validation.check.words import (
+    ladder_words,
+    low_speed_failure,
+    motion_failure,
+    percent,
+    speed_failure,
+    static_failure,
+    subject,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -77,7 +86,7 @@ class Check:
     pair : gear pair of the reference, at the speed and torque of the curves
     name : name of the other model or record
     role : "model" or "measurement"
-    limit : misfit up to which the curves agree
+    limit : misfit up to which the curves agree, a share of the motion
     static : static quantities that the other model states or shows
     low_speed : motion of a model that can be called, at a speed at which the motion is nearly static
     problem : the curves and our motion of the pair; None: no curves at one speed
@@ -109,9 +118,22 @@ class Check:
         """
         if self.over_speed is not None:
             return self.over_speed.value
+        return math.nan if self.problem is None else self.nearer.value
+
+    @property
+    def nearer(self) -> Misfit:
+        """Misfit of the channels against the nearer of both programs.
+
+        Raises
+        ------
+        ParameterError : no curves at one speed
+        """
         if self.problem is None:
-            return math.nan
-        return min(self.problem.misfit.value, math.inf if self.second is None else self.second.value)
+            raise refuse(
+                "nearer", "no curves at one speed", "a check of curves", "Read .static or .over_speed."
+            )
+        first = self.problem.misfit
+        return first if self.second is None or first.value <= self.second.value else self.second
 
     @property
     def failed(self) -> Rung | None:
@@ -156,7 +178,18 @@ class Check:
                 f"Not comparable: {who[0].lower()}{who[1:]} differs by {percent(self.misfit)}, but both "
                 f"programs of spurcheck differ by {percent(self.discrepancy)} here."
             )
-        return f"{who} {verb}{size}." + differs_words(self)
+        sentences = [f"{who} {verb}{size}."]
+        if self.failed is Rung.STATIC:
+            sentences.append(static_failure(self.static))
+        elif self.failed is Rung.LOW_SPEED and self.low_speed is not None:
+            sentences.append(low_speed_failure(self.low_speed))
+        elif self.failed is Rung.MOTION and self.problem is not None:
+            sentences.append(motion_failure(self.nearer, self.limit))
+        elif self.failed is Rung.OVER_SPEED and self.over_speed is not None:
+            sentences.append(speed_failure(self.over_speed))
+        if self.ladder is not None and (self.ladder.steps or self.failed is Rung.MOTION):
+            sentences.append(ladder_words(self.ladder))
+        return " ".join(sentences)
 
     @cached_property
     def channels(self) -> xr.Dataset:
@@ -193,8 +226,8 @@ class Check:
         return labelled_dataset(
             {name: ("channel", values, unit, words) for name, (values, unit, words) in columns.items()},
             {"channel": ([row.channel.channel.name for row in rows], "1", "channel")},
-            provenance(self.pair)
-            | {name: self.problem.motion.motion.attrs[name] for name in ("teeth", "contact", "supports")}
+            origin(self.pair)
+            | {"contact": self.problem.motion.motion.attrs["contact"]}
             | {"shift": self.problem.misfit.shift, "misfit": self.misfit, "verdict": self.verdict.value},
         )
 

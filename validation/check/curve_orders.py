@@ -34,6 +34,8 @@ _DIFFERENT = 1000
 _PER_NUMBER = 4
 #: Samples of a motion in a mesh cycle for the orders of a tooth pair.
 _SAMPLES = 512
+#: An order times the period that is this close to a whole number is whole.
+_WHOLE = 1e-6
 #: Mesh cycles from which on a line and the mesh orders are told apart.
 _LINE_AND_ORDERS = 1.5
 #: Parts of a mesh cycle, and the share of the parts of an engagement that the samples of a pair must show.
@@ -44,10 +46,19 @@ BIN = 1.0 / 32.0
 
 
 class ChannelOrders(NamedTuple):
-    """A channel of another model by its complex orders."""
+    """A channel of another model by its complex orders.
+
+    Attributes
+    ----------
+    channel : the channel
+    orders : its orders
+    noise : root of the expected square that white noise of the samples adds to all orders, in the unit of
+        the channel
+    """
 
     channel: Channel
     orders: ComplexOrders
+    noise: float = 0.0
 
 
 def resolved_orders(cycles: FloatArray, period: int = 1, most: int = MESH_ORDERS) -> int:
@@ -174,18 +185,43 @@ def shows_contact(channel: Channel, cycles: FloatArray, motion: MotionCurves, sh
 
 
 def orders_of_motion(motion: MotionCurves, channel: Channel, like: ComplexOrders) -> ComplexOrders:
-    """Return the orders of a motion of ours at the orders ``like`` of a channel."""
+    """Return the orders of a motion of ours at the orders ``like`` of a channel.
+
+    An order that the motion does not have, such as a shaft order of like teeth, is 0.
+    """
     if channel.tooth_pair is None:
         every = motion.orders(channel.quantity, int(np.ceil(like.orders.max())))
-        places = np.round(like.orders * motion.mesh_cycles).astype(np.int64) - 1
-        selected = np.isin(np.arange(every.orders.size), places)
-        return every.only(selected)
+        places = like.orders * motion.mesh_cycles
+        index = np.round(places).astype(np.int64) - 1
+        has = (np.abs(places - np.round(places)) < _WHOLE) & (index >= 0) & (index < every.orders.size)
+        amplitudes = np.zeros(like.orders.size, dtype=np.complex128)
+        amplitudes[has] = every.values[index[has]]
+        none = np.zeros((2 * amplitudes.size, 2 * amplitudes.size))
+        return ComplexOrders(like.orders, amplitudes, every.mean, none, like.period)
     phases = np.arange(_SAMPLES * like.period) / _SAMPLES
     label = PAIR_LABELS[0]  # all labels have the same life
     # The end of the period is before A.
     phases -= like.period * (phases >= int(motion.ahead.min()) + like.period)
     values = motion.at(channel.quantity, phases, label)
     return orders_of_period(values, round(like.orders.size / like.period), like.period)
+
+
+def white_noise(values: FloatArray) -> float:
+    """Return the standard deviation of white noise on a smooth curve, by its third differences.
+
+    The median is blind to the few samples at jumps. A third difference of white noise has 20 times its
+    variance, and the median of the size of a normal number is 0.6745 of its standard deviation.
+    """
+    differences = np.abs(np.diff(values, 3))
+    return float(np.median(differences)) / (0.6745 * np.sqrt(20.0)) if differences.size else 0.0
+
+
+def noise_in_orders(values: FloatArray, orders: int) -> float:
+    """Return the root of the expected square of white noise in a number of complex orders of samples (k,).
+
+    A complex amplitude of k samples with white noise has the variance 4 noise^2/k.
+    """
+    return white_noise(values) * float(np.sqrt(4.0 * orders / values.size))
 
 
 def coarse_shift(channels: Sequence[Channel], cycles: FloatArray, motion: MotionCurves) -> float:

@@ -1,4 +1,7 @@
-"""Curves of another model, or of a record: the one form to which every source is read, in SI."""
+"""Curves of another model, or of a record: the one form to which every source is read, in SI.
+
+Sources: docs/how_to/check_your_model.md, "Static rung" and "Values over speed".
+"""
 
 from __future__ import annotations
 

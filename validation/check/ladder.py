@@ -5,10 +5,35 @@ Sources: docs/how_to/check_your_model.md, "Explanations".
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
+import numpy as np
+
+from validation.check.explanations.cause import Variant
+from validation.check.explanations.registry import EXPLANATIONS
+from validation.check.mesh_frequency import SAME
 from validation.check.motion_curves import MotionCurves
 from validation.check.problem import Problem
+from validation.check.search import OF_FREQUENCY, BudgetSpentError, Motions, Path, Search, Step, without_step
+
+#: Paths that are followed at the same time, and most steps of a path.
+_BEAM = 3
+_MOST_STEPS = 6
+#: Share of the limit at which the search stops.
+_ENOUGH = 0.2
+#: Shares of the misfit by which a step must lower it: above the limit; below the limit, by a fixed value, and
+#: by a free parameter.
+_LEAST_GAIN = 0.1
+_GAIN_OF_FIXED = 0.5
+_GAIN_OF_FREE = 0.75
+#: Two motions are the same where they differ by this share of the misfit.
+_SAME_MOTION = 0.05
+#: Rounds in which steps are exchanged, and the share of the score that an exchange must reach.
+_EXCHANGES = 2
+_BETTER = 0.9
+#: Alternatives are named up to this many times the misfit.
+_WITHIN = 2.0
 
 
 @dataclass(frozen=True)
@@ -69,13 +94,172 @@ class Ladder:
     complete: bool
 
 
-def climb(problem: Problem, *, limit: float, budget: float) -> Ladder:
-    """Search the explanations of a misfit.
+def climb(problem: Problem, *, limit: float, budget: float, motions: Motions | None = None) -> Ladder:
+    """Search the explanations of a misfit, with a beam of three paths.
+
+    A step is accepted where it lowers the misfit by more than 10 % and by more than the error of the
+    comparison. Below the limit a step must explain more: half of what is left by a fixed value, three
+    quarters by a free parameter. The search stops at a fifth of the limit.
 
     Parameters
     ----------
     problem : the curves and our motion
-    limit : misfit below which the curves agree: the search stops
+    limit : misfit below which the curves agree
     budget : processor time of the search [s]
+    motions : motions of changed models, which searches of several curves of one pair share; they are added to
     """
-    return Ladder(problem.misfit.value, (), problem.motion, 0, complete=True)
+    search = Search(problem, budget, motions={} if motions is None else motions)
+    floor = search.floor(limit)
+    best = _best_path(search, limit, floor)
+    best = _exchanged(search, best, limit, floor)
+    best = _pruned(search, best, limit, floor)
+    steps = tuple(_explanations(search, best, floor))
+    return Ladder(problem.misfit.value, steps, best.trial.motion, search.runs, complete=not search.spent)
+
+
+def _best_path(search: Search, limit: float, floor: float) -> Path:
+    """Path at which the beam ends."""
+    beam = _starts(search, floor)
+    best = beam[0]
+    enough = max(limit * _ENOUGH, floor)
+    while best.trial.value > enough and len(best.steps) < _MOST_STEPS and not search.spent:
+        candidates: list[Path] = []
+        for path in beam:
+            candidates += [one for one in search.expand(path) if _accepted(one, path, limit, floor)]
+            if candidates and min(one.trial.value for one in candidates) <= enough:
+                break
+        beam = _distinct(candidates, floor)
+        if not beam or not _accepted(beam[0], best, limit, floor):
+            if best.trial.value <= limit or len(best.steps) > 1:
+                break
+            # No single step says enough: a wrong sign may hide every other cause.
+            joint = [one for one in search.with_reading(best) if _accepted(one, best, limit, floor)]
+            beam = _distinct([*beam, *joint], floor)
+            if not beam:
+                break
+        best = beam[0]
+    return best
+
+
+def _starts(search: Search, floor: float) -> list[Path]:
+    """Paths from which the beam starts: our model, or the readings of another mesh frequency."""
+    problem = search.problem
+    start = search.start()
+    variant = Variant(problem.pair)
+    paths = []
+    if abs(problem.frequency.factor - 1.0) > SAME:
+        for name in OF_FREQUENCY:
+            cause = EXPLANATIONS[name]
+            for choice in cause.choices(problem, variant):
+                step = Step(cause, choice)
+                trial = search.trial((step,))
+                if trial is not None:
+                    paths.append(Path((step,), trial))
+                    search.archive[paths[-1].keys] = paths[-1]
+    return sorted(paths, key=lambda path: path.score(floor)) or [start]
+
+
+def _accepted(path: Path, before: Path, limit: float, floor: float) -> bool:
+    """Whether a path lowers the misfit of the path before by enough."""
+    gain = before.trial.value - path.trial.value
+    share = _LEAST_GAIN
+    if before.trial.value <= limit:
+        share = _GAIN_OF_FIXED if path.free <= before.free else _GAIN_OF_FREE
+    return gain > max(share * before.trial.value, floor)
+
+
+def _distinct(paths: list[Path], floor: float) -> list[Path]:
+    """The best paths of a beam with motions that differ."""
+    beam: list[Path] = []
+    for path in sorted(paths, key=lambda one: one.score(floor)):
+        near = max(_SAME_MOTION * path.trial.value, floor)
+        if all(np.linalg.norm(path.trial.residual - one.trial.residual) > near for one in beam):
+            beam.append(path)
+        if len(beam) == _BEAM:
+            break
+    return beam
+
+
+def _exchanged(search: Search, best: Path, limit: float, floor: float) -> Path:
+    """The path with each step exchanged for a better one, where there is one."""
+    for _ in range(_EXCHANGES):
+        better = best
+        for number in range(len(best.steps)):
+            parent = _refitted(search, without_step(best, number))
+            if parent is None or best.steps[number].cause.name in OF_FREQUENCY:
+                continue
+            for path in search.expand(parent):
+                if path.score(floor) < _BETTER * better.score(floor):
+                    better = path
+        if better is best:
+            break
+        best = better
+    return best
+
+
+def _pruned(search: Search, best: Path, limit: float, floor: float) -> Path:
+    """The path without steps that are not needed."""
+    number = 0
+    while number < len(best.steps) and len(best.steps) > 1:
+        shorter = _refitted(search, without_step(best, number))
+        kept_by_frequency = best.steps[number].cause.name in OF_FREQUENCY
+        if shorter is None or kept_by_frequency or _accepted(best, shorter, limit, floor):
+            number += 1
+        else:
+            best = shorter
+            number = 0
+    return best
+
+
+def _refitted(search: Search, steps: tuple[Step, ...]) -> Path | None:
+    """The path of these steps with its free parameters fitted; None: no motion, or no budget."""
+    known = search.archive.get(frozenset(step.key for step in steps))
+    if known is not None:
+        return known
+    try:
+        trial = search.trial(steps)
+    except BudgetSpentError:
+        return None
+    return None if trial is None else search.fitted(Path(steps, trial))
+
+
+def _explanations(search: Search, best: Path, floor: float) -> Iterator[Explanation]:
+    """Steps of a path, the step that lowers the misfit most first, with their alternatives."""
+    rest = list(best.steps)
+    before: tuple[Step, ...] = ()
+    while rest:
+        values = [_misfit_of(search, (*before, step)) for step in rest]
+        first = [step.cause.name in OF_FREQUENCY for step in rest]
+        number = int(np.argmax(first)) if any(first) else int(np.argmin(values))
+        step = rest.pop(number)
+        before = (*before, step)
+        yield Explanation(
+            name=step.cause.name,
+            factor=step.label,
+            misfit=values[number] if rest else best.trial.value,
+            sentence=step.sentence,
+            alternatives=tuple(_alternatives(search, best, step, floor)),
+        )
+
+
+def _misfit_of(search: Search, steps: tuple[Step, ...]) -> float:
+    """Misfit of steps as they are; infinite where it cannot be computed."""
+    try:
+        trial = search.trial(steps)
+    except BudgetSpentError:
+        trial = None
+    return np.inf if trial is None else trial.value
+
+
+def _alternatives(search: Search, best: Path, step: Step, floor: float) -> Iterator[Alternative]:
+    """Explanations in place of a step within a factor 2 of the misfit, one for each name, best first."""
+    others = best.keys - {step.key}
+    most = _WITHIN * max(best.trial.value, floor)
+    names = set()
+    for keys, path in sorted(search.archive.items(), key=lambda item: item[1].trial.value):
+        if len(keys) != len(best.keys) or not others <= keys or step.key in keys:
+            continue
+        other = next(one for one in path.steps if one.key not in others)
+        if path.trial.value <= most and other.cause.name not in names:
+            names.add(other.cause.name)
+            yield Alternative(other.cause.name, other.label, path.trial.value, other.sentence)

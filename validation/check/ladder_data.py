@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import xarray as xr
 
-from lumped.labelling import labelled_dataset, provenance
+from lumped.labelling import labelled_dataset
 from validation.check.ladder import Ladder
+from validation.check.origin import origin
 from validation.check.problem import Problem
 
 
@@ -30,5 +31,5 @@ def ladder_data(problem: Problem, ladder: Ladder, limit: float) -> xr.Dataset:
             "alternatives": ("step", alternatives, "1", "explanations that do about as well"),
         },
         {"step": (list(range(len(misfits))), "1", "step")},
-        provenance(problem.pair) | {"limit": limit},
+        origin(problem.pair) | {"limit": limit},
     )

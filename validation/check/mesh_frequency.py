@@ -101,7 +101,8 @@ def mesh_frequency(curves: Curves, pair: GearPair, *, mistakes: bool = True) -> 
     at_pair = carried(near, carried.reach)
     best = Frequency(near, "")
     for cause, factor in trials.items():
-        if not _FEWEST <= carried.reach * factor <= carried.samples / 4.0:
+        # The last of the first orders has at least two samples in a wave.
+        if not _FEWEST <= carried.reach * factor <= carried.samples / (2.0 * _FIRST):
             continue
         trial = carried.refined(factor)
         most = carried(trial, carried.reach)

@@ -5,7 +5,7 @@
 U_m are the complex orders of the other model, V_m those of our motion, s the one shift in time of all
 channels. ``scale`` is the amplitude of the larger of both motions, so that e is 0 for equal motions, about 1
 where one motion is zero, and never explodes where one model leaves a channel at rest. The expected square of
-the noise of the samples is taken from |U_m - V_m|^2.
+white noise on the samples is taken from |U_m - V_m|^2; what repeats with every cycle is no noise.
 
 Sources: docs/how_to/check_your_model.md, "Misfit".
 """
@@ -57,12 +57,7 @@ class ChannelMisfit(NamedTuple):
     def motion(self) -> float:
         """Misfit of the orders above 0, without what the noise of the samples adds in the mean."""
         difference = float(np.linalg.norm(self.channel.orders.values - self.ours.values))
-        return math.sqrt(max(difference**2 - self.noise**2, 0.0)) / self.scale
-
-    @property
-    def noise(self) -> float:
-        """Root of the expected square of the noise in all orders, in the unit of the channel."""
-        return math.sqrt(max(float(np.trace(self.channel.orders.covariance)), 0.0))
+        return math.sqrt(max(difference**2 - self.channel.noise**2, 0.0)) / self.scale
 
     @property
     def mean(self) -> float:

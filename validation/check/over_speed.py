@@ -13,11 +13,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lumped.errors import NumericalError, refuse
-from lumped.labelling import labelled_dataset, provenance
+from lumped.labelling import labelled_dataset
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 from validation.check.curves import SpeedColumn, ValuesOverSpeed
 from validation.check.motion_curves import MotionCurves
+from validation.check.origin import origin
 from validation.check.quantities import QUANTITIES
 from validation.check.reference import lumped_motion
 from validation.signals.complex_orders import LEAST
@@ -86,7 +87,7 @@ class SpeedMisfit:
                 "column": ([column.name for column in columns], "1", "column"),
                 "speed": (self.theirs.speeds * 30.0 / np.pi, "rpm", "pinion speed"),
             },
-            provenance(self.pair) | {"theirs": self.theirs.name, "role": self.theirs.role},
+            origin(self.pair) | {"theirs": self.theirs.name, "role": self.theirs.role},
         )
 
 

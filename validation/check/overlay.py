@@ -8,9 +8,10 @@ import numpy as np
 import xarray as xr
 
 from lumped.errors import NumericalError
-from lumped.labelling import labelled_dataset, provenance
+from lumped.labelling import labelled_dataset
 from lumped.typing import FloatArray
 from validation.check.curves import Channel
+from validation.check.origin import origin
 from validation.check.problem import Problem
 
 #: Unit attribute of a variable whose channels differ in their unit.
@@ -61,7 +62,7 @@ def overlay(problem: Problem, *, bins: int = 64) -> xr.Dataset:
             "units": ("channel", [channel.kind.unit for channel in channels], "1", "SI unit of the channel"),
         },
         {"channel": ([channel.name for channel in channels], "1", "channel")},
-        provenance(problem.pair) | {"theirs": problem.curves.name, "role": problem.curves.role},
+        origin(problem.pair) | {"theirs": problem.curves.name, "role": problem.curves.role},
     )
 
 

@@ -14,6 +14,7 @@ from validation.check.curve_orders import (
     ChannelOrders,
     coarse_shift,
     compared_orders,
+    noise_in_orders,
     orders_of_channel,
     shows_contact,
 )
@@ -22,7 +23,10 @@ from validation.check.mesh_frequency import Frequency, mesh_frequency, nominal_c
 from validation.check.misfit import Misfit, misfit_of
 from validation.check.motion_curves import MotionCurves
 from validation.check.settled import Settled, settled
+from validation.signals.complex_orders import ComplexOrders, complex_orders
 
+#: Noise below this share of the motion needs no second estimate.
+_FREE_OF_NOISE = 2e-3
 #: Samples in a mesh cycle from which on high orders do not pass for low ones.
 _COARSE = 400.0
 
@@ -50,10 +54,17 @@ class Problem:
     refined: Curves | None = None
 
     @classmethod
-    def of(cls, pair: GearPair, curves: Curves, motion: MotionCurves, shift: float | None = None) -> Problem:
+    def of(
+        cls,
+        pair: GearPair,
+        curves: Curves,
+        motion: MotionCurves,
+        shift: float | None = None,
+        refined: Curves | None = None,
+    ) -> Problem:
         """Return the problem of curves and a motion, with the mesh frequency that the curves show."""
         frequency = mesh_frequency(curves, pair, mistakes=curves.role == "model")
-        return cls(pair, curves, motion, frequency, shift)
+        return cls(pair, curves, motion, frequency, shift, refined)
 
     @cached_property
     def cycles(self) -> FloatArray:
@@ -102,8 +113,37 @@ class Problem:
             used = self.used(channel)
             settled_channel = replace(channel, values=channel.values[used])
             orders = orders_of_channel(settled_channel, self.cycles[used], self.orders, self.motion, shift)
-            result.append(ChannelOrders(channel, orders))
+            noise = self._noise(settled_channel, self.cycles[used], orders)
+            result.append(ChannelOrders(channel, orders, noise))
         return tuple(result)
+
+    def _noise(self, channel: Channel, cycles: FloatArray, orders: ComplexOrders) -> float:
+        """Root of the expected square of the noise in all orders of a channel, see ``ChannelOrders``.
+
+        White noise is seen by differences of neighbouring samples, and by the difference of two halves of
+        the curves. Only the first takes jumps and high orders in few samples for noise, only the second a
+        motion that has not settled: the smaller one is noise. Curves of less than two cycles count as free
+        of noise.
+        """
+        white = noise_in_orders(channel.values, orders.orders.size)
+        period = orders.period
+        if white < _FREE_OF_NOISE * orders.size:
+            return white
+        if channel.tooth_pair is not None:
+            return white
+        half = int(np.ptp(cycles) + 1e-6) // (2 * period) * period
+        if half < 1:
+            return 0.0
+        ends = (cycles[-1] - half, cycles[-1] - 2 * half)
+        fits = []
+        for end in ends:
+            inside = (cycles > end + 1e-9) & (cycles <= end + half + 1e-9)
+            values = channel.values[inside]
+            if values.size < 2 * (2 * orders.orders.size + 1):
+                return 0.0
+            fits.append(complex_orders(cycles[inside], values, orders.orders, period=period))
+        of_halves = 0.5 * float(np.linalg.norm(fits[0].values - fits[1].values))
+        return min(white, of_halves)
 
     def used(self, channel: Channel) -> BoolArray:
         """(k,) samples of a channel that are compared.
@@ -121,12 +161,21 @@ class Problem:
         settled_channel = replace(channel, values=channel.values[used])
         return shows_contact(settled_channel, self.cycles[used], self.motion, shift)
 
-    def misfit_with(self, motion: MotionCurves, theirs: tuple[ChannelOrders, ...] | None = None) -> Misfit:
-        """Return the misfit of channels (by default those of the curves) and another motion of ours."""
+    def misfit_with(
+        self,
+        motion: MotionCurves,
+        theirs: tuple[ChannelOrders, ...] | None = None,
+        *,
+        free_shift: bool = False,
+    ) -> Misfit:
+        """Return the misfit of channels (by default those of the curves) and another motion of ours.
+
+        ``free_shift`` says whether the shift is searched although the user states it.
+        """
         misfit = misfit_of(
             self.theirs if theirs is None else theirs,
             motion,
-            shift=self.given_shift,
+            shift=None if free_shift else self.given_shift,
             near=self.coarse_shift,
             means=self.means,
         )

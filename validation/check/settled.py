@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from lumped.typing import BoolArray, FloatArray
-from validation.check.curve_orders import without_ramp
+from validation.check.curve_orders import noise_in_orders, without_ramp
 from validation.check.curves import Channel, Curves
 from validation.signals.complex_orders import complex_orders
 
@@ -83,18 +83,7 @@ def _change(channel: Channel, cycles: FloatArray, block: int) -> float:
     size = max(before.size, after.size)
     if size <= 0.0:
         return 0.0
-    # A complex amplitude of n samples with white noise has the variance 4 noise^2/n.
-    samples = block * values.size / max(float(np.ptp(cycles)), 1e-300)
-    noise = white_noise(values) * np.sqrt(2.0 * _ORDERS * 4.0 / samples)
+    last = values[cycles > end - block + 1e-9]
+    noise = np.sqrt(2.0) * noise_in_orders(last, _ORDERS)
     difference = float(np.linalg.norm(after.values - before.values))
     return difference / size if difference > _NOISE * noise else 0.0
-
-
-def white_noise(values: FloatArray) -> float:
-    """Return the standard deviation of white noise on a smooth curve, by its third differences.
-
-    The median is blind to the few samples at jumps. A third difference of white noise has 20 times its
-    variance, and the median of the size of a normal number is 0.6745 of its standard deviation.
-    """
-    differences = np.abs(np.diff(values, 3))
-    return float(np.median(differences)) / (0.6745 * np.sqrt(20.0)) if differences.size else 0.0

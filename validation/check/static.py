@@ -19,15 +19,16 @@ import numpy as np
 
 from lumped.arguments import real_array
 from lumped.errors import refuse
-from lumped.labelling import labelled_dataset, provenance
+from lumped.labelling import labelled_dataset
 from lumped.model.averaged import natural_frequencies
 from lumped.model.mesh_cycle import mesh_cycle
-from lumped.model.periodic_system import periodic_system, supports_of
+from lumped.model.periodic_system import periodic_system
 from lumped.schema.bodies import bodies_of
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 from validation.check.curves import STATICS, Curves
 from validation.check.mesh_frequency import nominal_cycles
+from validation.check.origin import origin
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -109,7 +110,7 @@ class StaticRung:
         dataset = labelled_dataset(
             {name: ("quantity", values, "1", words) for name, (values, words) in columns.items()},
             {"quantity": ([row.name for row in self.rows], "1", "quantity")},
-            provenance(self.pair) | {"teeth": "alike", "supports": supports_of(self.pair, None)},
+            origin(self.pair),
         )
         return dataset.assign_coords(units=("quantity", [row.unit for row in self.rows]))
 

@@ -2,14 +2,25 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from lumped.fields.units import to_stated
 from validation.check.curves import Role
-from validation.files.formatting import quantity
+from validation.check.ladder import Ladder
+from validation.check.misfit import Misfit
+from validation.check.over_speed import SpeedMisfit
+from validation.check.problem import Problem
+from validation.check.static import StaticRow, StaticRung
+from validation.files.formatting import percent, quantity
 
-if TYPE_CHECKING:
-    from validation.check.check import Check
-    from validation.check.static import StaticRow
+__all__ = [
+    "ladder_words",
+    "low_speed_failure",
+    "motion_failure",
+    "percent",
+    "speed_failure",
+    "static_failure",
+    "static_words",
+    "subject",
+]
 
 #: Most static quantities, and most channels, in a sentence.
 _MOST = 3
@@ -20,58 +31,44 @@ def subject(role: Role) -> str:
     return "Your model" if role == "model" else "The record"
 
 
-def percent(share: float) -> str:
-    """Return a share in per cent with two digits: "3.1 %"."""
-    size = 100.0 * share
-    return f"{size:.0f} %" if size >= 9.95 else f"{size:.2g} %"
+def static_failure(rung: StaticRung) -> str:
+    """Return the sentence on static quantities that differ."""
+    return f"Before anything moves: {'; '.join(static_words(row) for row in rung.wrong[:_MOST])}."
 
 
-def differs_words(check: Check) -> str:
-    """Return the sentences on what differs and what the curves are compatible with, with a blank before.
+def low_speed_failure(problem: Problem) -> str:
+    """Return the sentence on a transmission error that differs where the motion is nearly static."""
+    rpm = to_stated(problem.pair.operating.pinion_speed, "rpm")
+    size = percent(problem.misfit.value)
+    return f"Already at {rpm:.0f} rpm the transmission error differs by {size}: look at the statics first."
 
-    Empty: nothing differs.
-    """
-    from validation.check.check import Rung
 
-    if check.failed is None:
-        return ""
-    parts = []
-    if check.failed is Rung.STATIC:
-        parts.append(
-            f"Before anything moves: {'; '.join(static_words(row) for row in check.static.wrong[:_MOST])}."
-        )
-    if check.failed is Rung.LOW_SPEED and check.low_speed is not None:
-        size = percent(check.low_speed.misfit.value)
-        rpm = check.low_speed.pair.operating.pinion_speed * 9.549296585513721
-        parts.append(
-            f"Already at {rpm:.0f} rpm the transmission error differs by {size}: look at the statics first."
-        )
-    if check.failed is Rung.MOTION:
-        parts.append(f"{channel_words(check)}.")
-    if check.failed is Rung.OVER_SPEED and check.over_speed is not None:
-        rpm = check.over_speed.worst_speed * 9.549296585513721
-        parts.append(f"The largest difference is at {rpm:.0f} rpm.")
-    if check.explanations:
-        first = check.explanations[0]
-        parts.append(f"{first.sentence}: the misfit is then {percent(first.misfit)}.")
-        parts += [
-            f"Then {step.sentence[0].lower()}{step.sentence[1:]}: {percent(step.misfit)}."
-            for step in check.explanations[1:]
-        ]
-    elif check.ladder is not None and check.failed is Rung.MOTION:
-        parts.append("No named explanation makes the difference much smaller.")
-    return "".join(f" {part}" for part in parts)
+def motion_failure(misfit: Misfit, limit: float) -> str:
+    """Return the sentence on the channels that differ most, with their misfits."""
+    rows = sorted(misfit.channels, key=lambda row: -row.total)
+    wrong = [row for row in rows if row.total > limit][:_MOST] or rows[:1]
+    names = ", ".join(f"{row.channel.channel.name} {percent(row.total)}" for row in wrong)
+    return f"Most in {names}."
+
+
+def speed_failure(misfit: SpeedMisfit) -> str:
+    """Return the sentence on the speed at which values over speed differ most."""
+    return f"The largest difference is at {to_stated(misfit.worst_speed, 'rpm'):.0f} rpm."
+
+
+def ladder_words(ladder: Ladder) -> str:
+    """Return the sentences on the steps of the ladder."""
+    if not ladder.steps:
+        return "No named explanation makes the difference much smaller."
+    first = ladder.steps[0]
+    sentences = [f"{first.sentence}: the misfit is then {percent(first.misfit)}."]
+    sentences += [
+        f"Then {step.sentence[0].lower()}{step.sentence[1:]}: {percent(step.misfit)}."
+        for step in ladder.steps[1:]
+    ]
+    return " ".join(sentences)
 
 
 def static_words(row: StaticRow) -> str:
     """Return a static quantity that differs, with both values: "contact ratio 1.71, spurcheck 1.64"."""
     return f"{row.name} {quantity(row.theirs, row.unit, 4)}, spurcheck {quantity(row.ours, row.unit, 4)}"
-
-
-def channel_words(check: Check) -> str:
-    """Return the channels that differ most, with their misfits."""
-    assert check.problem is not None
-    rows = sorted(check.problem.misfit.channels, key=lambda row: -row.total)
-    wrong = [row for row in rows if row.total > check.limit][:_MOST] or rows[:1]
-    names = ", ".join(f"{row.channel.channel.name} {percent(row.total)}" for row in wrong)
-    return f"Most in {names}"

@@ -101,6 +101,7 @@ def _show(result: Check) -> None:
     """Print the verdict, the channels, and the steps of the ladder."""
     from validation.check.words import percent
     from validation.files.formatting import quantity
+    from validation.reporting.check_content import peaks_words
 
     console = stdout()
     console.print(result.words, style="bold")
@@ -113,9 +114,24 @@ def _show(result: Check) -> None:
                 percent(row.total),
                 "agrees" if row.total <= result.limit else "differs",
             )
-            for row in result.problem.misfit.channels
+            for row in result.nearer.channels
         ]
-        show("", "channel | >theirs, peak to peak | >spurcheck | >misfit | ", rows)
+        show(peaks_words(result), "channel | >theirs, peak to peak | >spurcheck | >misfit | ", rows)
+    if result.over_speed is not None:
+        from validation.reporting.check_content import speed_rows
+
+        columns = [
+            (
+                row.name,
+                percent(row.misfit),
+                f"{row.rpm:.0f} rpm",
+                quantity(row.theirs, row.unit, 4),
+                quantity(row.ours, row.unit, 4),
+                "agrees" if row.misfit <= result.limit else "differs",
+            )
+            for row in speed_rows(result.over_speed)
+        ]
+        show("", "column | >misfit | >worst speed | >theirs there | >spurcheck there | ", columns)
     if result.static.rows:
         rows = [
             (

@@ -66,7 +66,6 @@ def report(
     from lumped.arguments import some_of
     from lumped.errors import refuse
     from validation.files.folder import check_target
-    from validation.reporting import report as write
 
     required = some_of("--require", require or (), ("holds", "stable", "contact", "record"))
     if "record" in required and record is None:
@@ -74,6 +73,9 @@ def report(
     check_target(output, force=force)
     name, gear_pair = pair
     with progress_bar("report") as bar, compiling(bar) as tell:
+        tell(0.0, "loading")
+        from validation.reporting import report as write  # the bar is there and the second process runs
+
         written = write(
             gear_pair,
             output,
@@ -164,11 +166,12 @@ def crosscheck(
     cycles : Mesh cycles to run.
     samples : Output times per mesh cycle.
     """
-    from validation.cross_check.comparison import crosscheck as run
-    from validation.cross_check.verdict import Verdict
-
     share = opt.number_in("--limit", limit, "1")
     with progress_bar("cross-check") as bar, compiling(bar) as tell:
+        tell(0.0, "loading")
+        from validation.cross_check.comparison import crosscheck as run
+        from validation.cross_check.verdict import Verdict
+
         check = run(
             pair, cycles=cycles, samples_per_cycle=samples, limit=share, supports=supports, progress=tell
         )

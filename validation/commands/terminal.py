@@ -260,11 +260,9 @@ def note(text: str) -> None:
 @contextmanager
 def progress_bar(text: str) -> Iterator[Progress]:
     """Show a progress bar on stderr while the block runs. Without a terminal nothing is drawn."""
-    from rich import progress as rich
+    from validation.commands.progress import bar_of_stages
 
-    columns = (rich.TextColumn("{task.description}"), rich.BarColumn(), rich.TimeElapsedColumn())
-    console = stderr()
-    with rich.Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
+    with bar_of_stages(stderr()) as bar:
         task = bar.add_task(text, total=1.0)
 
         def tell(fraction: float, stage: str = "", /) -> None:

@@ -74,8 +74,8 @@ class LossAgreement:
 
 def loss_agreement(pair: GearPair, lumped: xr.Dataset, multibody: xr.Dataset) -> LossAgreement | None:
     """Compare the losses in the attributes of both motions. None: a motion has no losses there."""
-    lost = losses_of(lumped)
-    lost_multibody = losses_of(multibody)
+    lost = losses_of(lumped.attrs)
+    lost_multibody = losses_of(multibody.attrs)
     power = pair.operating.pinion_torque * pair.geometry.omega_pinion
     return LossAgreement(lost, lost_multibody, input_power=power) if lost and lost_multibody else None
 

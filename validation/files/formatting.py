@@ -155,3 +155,11 @@ def _joined(value: Any) -> Any:
     if isinstance(value, list):
         return [_joined(one) for one in value]
     return " ".join(value.split()) if isinstance(value, str) else value
+
+
+def percent(share: float) -> str:
+    """Return a share in per cent with two digits: "3.1 %"; "< 0.01 %" for a smaller one."""
+    size = 100.0 * share
+    if 0.0 < size < 0.01:
+        return "< 0.01 %"
+    return f"{size:.0f} %" if size >= 9.95 else f"{size:.2g} %"

@@ -10,13 +10,15 @@ import tempfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, TYPE_CHECKING, Any
 
-import h5py
 import numpy as np
-import xarray as xr
 
 from lumped.errors import ParameterError, StorageError, refuse
+
+if TYPE_CHECKING:
+    import h5py
+    import xarray as xr
 
 #: Name of the scale of a dimension without coordinate, as the NetCDF-4 specification requires.
 _NO_VARIABLE = "This is a netCDF dimension but not a netCDF variable. %9d"
@@ -118,6 +120,9 @@ def _write_netcdf4(result: xr.Dataset, content: IO[bytes]) -> None:
 
     Dimension scales follow the NetCDF-4 format specification. Real numbers are compressed.
     """
+    import h5py
+    import xarray as xr
+
     encoded, attributes = xr.conventions.encode_dataset_coordinates(result)
     with h5py.File(content, "w", track_order=True) as file:
         file.attrs.update({str(name): value for name, value in attributes.items()})
@@ -140,6 +145,8 @@ def _dataset(file: h5py.File, name: str, variable: xr.Variable) -> h5py.Dataset:
     options = dict[str, Any]()
     if values.dtype.kind in "OU":
         values = values.astype(object)
+        import h5py
+
         options["dtype"] = h5py.string_dtype()
     is_real = values.dtype.kind == "f"
     if is_real:

@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
+from validation.files.formatting import percent
 from validation.plots.style import (
     BLUE,
     GREY,
@@ -49,7 +50,7 @@ def motion_figure(data: xr.Dataset) -> Figure:
         phase_axes.plot(x, theirs / factor, color=RED, label=theirs_label, **dots)
         phase_axes.plot(x, ours / factor, color=BLUE, linewidth=1.2, label="spurcheck")
         phase_axes.set(xlabel="mesh cycles since A [-]", ylabel=f"{name} [{unit}]", xlim=(0.0, None))
-        words = f"misfit {100.0 * float(channel['misfit']):.2g} %"
+        words = f"misfit {percent(float(channel['misfit']))}"
         write_beside(phase_axes, words, (0.02, 1.0), (0, 2), "axes fraction", fontsize=8.0)
         order = channel["order"].to_numpy()
         known = np.isfinite(channel["their_orders"].to_numpy())
@@ -81,7 +82,7 @@ def ladder_figure(data: xr.Dataset) -> Figure:
     write_beside(ax, f"limit {limit:.2g} %", (limit, 1.0), (2, 2), ("data", "axes fraction"), color=GREY)
     ax.grid(visible=False, axis="y")
     for place, misfit, text in zip(places, misfits, texts, strict=True):
-        write_beside(ax, f"{misfit:.2g} %", (misfit, place + 0.08), (3, 0), fontsize=8.5, va="center")
+        write_beside(ax, percent(misfit / 100.0), (misfit, place + 0.08), (3, 0), fontsize=8.5, va="center")
         words_look = {"fontsize": 8.0, "va": "top", "linespacing": 1.25}
         write_beside(ax, text, (0.0, place + 0.18), (2, -1), ("axes fraction", "data"), **words_look)
     ax.set_xlabel("misfit [%]")
@@ -107,10 +108,10 @@ def speed_figure(data: xr.Dataset) -> Figure:
         theirs, ours = (column[f"{key}_over_speed"].to_numpy() for key in ("theirs", "ours"))
         factor, unit = scaled(theirs, ours, unit=str(column["units"].item()))
         label = their_name(str(data.attrs["role"]))
-        ax.plot(speeds, theirs / factor, color=RED, marker="o", markersize=2.4, linestyle="none", label=label)
-        ax.plot(speeds, ours / factor, color=BLUE, linewidth=1.2, label="spurcheck")
+        ax.plot(speeds, theirs / factor, color=RED, marker="o", markersize=4, linestyle="none", label=label)
+        ax.plot(speeds, ours / factor, color=BLUE, linewidth=1.2, marker="x", markersize=4, label="spurcheck")
         ax.set_ylabel(f"{name} [{unit}]")
-        words = f"misfit {100.0 * float(column['misfit']):.2g} %"
+        words = f"misfit {percent(float(column['misfit']))}"
         write_beside(ax, words, (0.02, 1.0), (0, 2), "axes fraction", fontsize=8.0)
     axes[-1, 0].set_xlabel("pinion speed [rpm]")
     legend_outside(figure, axes[0, 0].get_legend_handles_labels()[0], 2)

@@ -132,6 +132,7 @@ class Input:
         return {part.field: part.at(share) for part in self.parts}
 
 
+@functools.lru_cache(maxsize=16)  # a report asks a dozen times
 def uncertain_inputs(pair: GearPair) -> tuple[Input, ...]:
     """Return every uncertain input of a pair.
 

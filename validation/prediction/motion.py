@@ -14,16 +14,17 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from enum import Enum
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
-import lumped
 from lumped.errors import NumericalError
 from lumped.model.periodic_system import Supports, with_supports
-from lumped.model.results import cycle_peak_to_peak
+from lumped.model.results import PlainMotion, peak_to_peak, plain
 from lumped.model.revolution_motion import Origin
 from lumped.model.steady import UNSTABLE
+from lumped.model.steady_state import periodic_motion
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
@@ -62,7 +63,7 @@ class Prediction:
     ----------
     pair : the gear pair
     motion : kind of the motion
-    cycle : motion at equal time steps over its period, with the variables of ``lumped.steady_state``
+    plain : the motion at equal time steps over its period, as plain arrays
     peak_to_peak : peak to peak of the transmission error, with peaks between samples [m]
     stable : whether the motion returns after a small disturbance, by the multipliers of the motion; for
         unlike teeth by the multipliers of the twin with like teeth
@@ -73,12 +74,17 @@ class Prediction:
 
     pair: GearPair
     motion: Motion
-    cycle: xr.Dataset
+    plain: PlainMotion
     peak_to_peak: float
     stable: bool
     mesh_cycles: int
     losses: Mapping[str, float]
     reason: str = ""
+
+    @property
+    def cycle(self) -> xr.Dataset:
+        """Motion at equal time steps over its period, with the variables of ``lumped.steady_state``."""
+        return self.plain.dataset
 
     @property
     def transmission_error(self) -> xr.DataArray:
@@ -93,7 +99,7 @@ class Prediction:
     @cached_property
     def mesh_force(self) -> FloatArray:
         """Total normal load of all tooth pairs at the times of ``cycle`` [N]."""
-        return np.asarray(self.cycle["normal_load"].sum("pair").to_numpy(), dtype=np.float64)
+        return np.asarray(self.plain.values["normal_load"].sum(axis=0), dtype=np.float64)
 
     @property
     def input_power(self) -> float:
@@ -128,7 +134,7 @@ class Prediction:
     @property
     def tooth_load(self) -> float:
         """Largest load of one tooth pair over the static mesh force [-]."""
-        return float(self.cycle["normal_load"].max()) / self.static_force
+        return float(self.plain.values["normal_load"].max()) / self.static_force
 
     @cached_property
     def bearing_orders(self) -> FloatArray:
@@ -142,13 +148,13 @@ class Prediction:
     @property
     def bearing_rms(self) -> float:
         """Root mean square of the pinion bearing force about its mean, both directions together [N]."""
-        along, across = (float(self.cycle[f"bearing_force_{line}_p"].std()) for line in "xy")
+        along, across = (float(self.plain.values[f"bearing_force_{line}_p"].std()) for line in "xy")
         rms = float(np.hypot(along, across))
         return rms if rms > NOTHING * self.static_force else 0.0
 
     def orders_of(self, name: str) -> FloatArray:
         """(``ORDERS``,) amplitudes of a variable of ``cycle`` at the mesh orders 1, 2, ..."""
-        return mesh_orders(self.cycle[name].to_numpy(), self.mesh_cycles)
+        return mesh_orders(self.plain.values[name], self.mesh_cycles)
 
     @property
     def numbers(self) -> dict[str, float]:
@@ -229,17 +235,17 @@ def predicted(pair: GearPair) -> Prediction:
     """Return the prediction for a pair at its operating point, on the shafts of a pair that has shafts."""
     samples = _SAMPLES if pair.healthy is pair else None
     try:
-        cycle = lumped.steady_state(pair, contact="unilateral", samples_per_cycle=samples)
+        motion = periodic_motion(pair, "unilateral", samples_per_cycle=samples)
     except NumericalError as error:
         return _stand_in(pair, samples, error)
-    settled = pair.healthy is pair and cycle.attrs.get("origin") == Origin.SETTLED.value
-    return measured(pair, cycle, Motion.SETTLED if settled else Motion.UNILATERAL)
+    settled = pair.healthy is pair and motion.attributes.get("origin") == Origin.SETTLED.value
+    return _of_plain(pair, motion, Motion.SETTLED if settled else Motion.UNILATERAL)
 
 
 def _stand_in(pair: GearPair, samples: int | None, error: NumericalError) -> Prediction:
     """The linear motion, stable or not, in place of the unilateral motion that was not found."""
     try:
-        linear = measured(pair, lumped.steady_state(pair, samples_per_cycle=samples), Motion.LINEAR)
+        linear = _of_plain(pair, periodic_motion(pair, samples_per_cycle=samples), Motion.LINEAR)
     except NumericalError:
         raise error from None
     return replace(linear, reason=str(error))
@@ -253,21 +259,25 @@ def pulls(pair: GearPair, linear: xr.Dataset) -> bool:
 
 def measured(pair: GearPair, cycle: xr.Dataset, motion: Motion) -> Prediction:
     """Return the numbers of a periodic motion of either model, sampled at equal steps over its period."""
-    attributes = cycle.attrs
-    swing = float(attributes.get("dte_peak_to_peak", cycle_peak_to_peak(cycle, "dte")))
+    return _of_plain(pair, plain(cycle), motion)
+
+
+def _of_plain(pair: GearPair, cycle: PlainMotion, motion: Motion) -> Prediction:
+    """Numbers of a periodic motion as plain arrays, sampled at equal steps over its period."""
+    attributes = cycle.attributes
+    dte = cycle.values["dte"]
+    swing = attributes.get("dte_peak_to_peak", peak_to_peak(cycle.time, dte, cycle.values["dte_dot"]))
     return Prediction(
         pair=pair,
         motion=motion,
-        cycle=cycle,
-        peak_to_peak=swing if swing > NOTHING * float(np.abs(cycle["dte"]).max()) else 0.0,
+        plain=cycle,
+        peak_to_peak=float(swing) if swing > NOTHING * float(np.abs(dte).max()) else 0.0,
         stable=float(attributes.get("spectral_radius", 0.0)) <= UNSTABLE,
         mesh_cycles=int(attributes.get("period_cycles", 1)),
-        losses=losses_of(cycle),
+        losses=losses_of(attributes),
     )
 
 
-def losses_of(motion: xr.Dataset) -> dict[str, float]:
-    """Return the mean losses by place [W], the attributes ``power_*`` of a motion of either model."""
-    return {
-        place: float(motion.attrs[f"power_{place}"]) for place in PLACES if f"power_{place}" in motion.attrs
-    }
+def losses_of(attributes: Mapping[str, Any]) -> dict[str, float]:
+    """Return the mean losses by place [W]: the attributes ``power_*`` of a motion of either model."""
+    return {place: float(attributes[f"power_{place}"]) for place in PLACES if f"power_{place}" in attributes}

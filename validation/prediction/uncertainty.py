@@ -353,7 +353,7 @@ def _peaks(pair: GearPair, speeds_rpm: FloatArray, step_angle: float) -> FloatAr
             motion = periodic_solution(system, times, estimate_error=False, step_angle=step_angle)
         except NumericalError:
             continue
-        sizes[j] = motion.peak_to_peak["dte"]
+        sizes[j] = motion.peak_to_peak_of("dte")
     return sizes
 
 

@@ -23,21 +23,18 @@ from lumped.outcomes import Absent, Outcome
 from lumped.typing import Progress
 from validation.check.curves import Curves
 from validation.check.reading.reader import read
-from validation.check.record.channel_comparison import Record
-from validation.check.record.comparing import check_record
-from validation.check.record.record_comparison import RecordComparison
+from validation.check.record.channel import Record
+from validation.check.record.compare import check_record
+from validation.check.record.comparison import RecordComparison
 from validation.files.folder import FORMAT, FORMAT_VERSION, whole_folder
 from validation.files.output import write_dataset
 from validation.reporting.blocks import Picture, Table, chapter_data, plain
 from validation.reporting.chapter import Chapter, Written
-from validation.reporting.chapters import CHAPTERS
 from validation.reporting.effort import FULL, QUICK
 from validation.reporting.facts import Fact
-from validation.reporting.first_figures import first_figures
 from validation.reporting.first_numbers import Number, first_numbers
 from validation.reporting.gate import TOLERANCE, Comparison, load_report
 from validation.reporting.gate import compare as compare_reports
-from validation.reporting.page import render
 from validation.reporting.page_one import PageOne, page_one, title
 from validation.reporting.pictures import draw_pictures
 from validation.reporting.relations import failed_checks
@@ -129,6 +126,11 @@ def report(
         if early is not None:
             tell(0.0, "motion")
             early(title(results), first_numbers(results.prediction))
+        # Chapters and figures import matplotlib, for which the first numbers need not wait.
+        from validation.reporting.chapters import CHAPTERS
+        from validation.reporting.first_figures import first_figures
+        from validation.reporting.page import render
+
         chapters = written(results, CHAPTERS, lambda f, stage="", /: tell(0.85 * f, stage))
         first = page_one(results)
         pictures = first_figures(results)

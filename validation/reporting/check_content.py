@@ -6,12 +6,16 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
+import numpy as np
+
 from validation.check.check import Check, Rung
 from validation.check.ladder import Ladder
 from validation.check.ladder_data import ladder_data
 from validation.check.misfit import ChannelMisfit
+from validation.check.over_speed import SpeedMisfit
 from validation.check.overlay import figure_data
 from validation.check.problem import Problem
+from validation.check.quantities import QUANTITIES
 from validation.check.static import StaticRow
 from validation.check.words import percent, static_words, subject
 from validation.plots.check import ladder_figure, motion_figure, speed_figure
@@ -70,7 +74,23 @@ def look_first(check: Check) -> tuple[str, ...]:
         if step.alternatives:
             others = "; ".join(other.sentence for other in step.alternatives[:3])
             texts[-1] += f" The curves do not tell this from: {others}."
-    return tuple(texts[:_MOST_FIRST])
+    return tuple(texts[:_MOST_FIRST]) or _without_explanation(check)
+
+
+def _without_explanation(check: Check) -> tuple[str, ...]:
+    """What to look at where neither a static quantity differs nor an explanation is known."""
+    statics = "contact_ratio, base_radius_pinion, static_force and mesh_stiffness"
+    if check.failed is Rung.LOW_SPEED:
+        return (
+            "At low speed the transmission error is the static force over the mesh stiffness. Give "
+            f"{statics} of your model beside the curves: they are then compared first.",
+        )
+    if check.failed is Rung.MOTION and not check.static.rows and check.role == "model":
+        return (
+            f"Give {statics}, masses, inertias and natural_frequencies of your model beside the curves: they "
+            "are then compared first.",
+        )
+    return ()
 
 
 def static_content(check: Check) -> Content:
@@ -90,7 +110,7 @@ def static_content(check: Check) -> Content:
             Column[StaticRow]("theirs", "theirs", lambda row: Quantity(row.theirs, row.unit)),
             Column[StaticRow]("ours", "spurcheck", lambda row: Quantity(row.ours, row.unit)),
             Column[StaticRow](
-                "difference", "theirs over ours, less 1 [%]", lambda row: _rounded(100.0 * row.difference)
+                "difference", "theirs over ours, less 1 [%]", lambda row: _in_percent(row.difference)
             ),
             Column[StaticRow]("limit", "limit [%]", lambda row: _rounded(100.0 * row.limit)),
             Column[StaticRow](
@@ -125,9 +145,27 @@ def motion_content(check: Check) -> Content:
         figure_data(check.problem),
         motion_figure,
     )
-    shift = f"All channels have the same shift in time, {check.problem.misfit.shift:.4f} mesh cycles."
-    blocks: tuple[Block, ...] = (picture, _channel_table(check, rows), _orders_table(rows), Text(shift))
+    blocks: tuple[Block, ...] = (
+        picture, _channel_table(check, rows), _orders_table(rows), Text(_shift_words(check.problem))
+    )  # fmt: skip
     return Content(f"Misfit {percent(check.misfit)}, limit {percent(check.limit)}.{second}", blocks)
+
+
+def peaks_words(check: Check) -> str:
+    """Sentence on the peaks to peak: they are those of the compared orders."""
+    highest = max((float(row.ours.orders.max(initial=0.0)) for row in check.nearer.channels), default=0.0)
+    return f"Peaks to peak are those of the mesh orders up to {highest:.4g}."
+
+
+def _shift_words(problem: Problem) -> str:
+    """Sentence on the common shift in time of all channels."""
+    shift = round(problem.misfit.shift, 3)
+    if problem.coarse_shift is None:
+        shift %= problem.motion.mesh_cycles
+    return (
+        f"All channels are shifted in time together: their first sample lies {shift:.3f} mesh cycles behind "
+        "the moment when tooth pair A is at A."
+    )
 
 
 def _channel_table(check: Check, rows: Sequence[ChannelMisfit]) -> Table:
@@ -136,7 +174,13 @@ def _channel_table(check: Check, rows: Sequence[ChannelMisfit]) -> Table:
 
     def against_second(row: ChannelMisfit) -> Cell:
         other = second.get(row.channel.channel.name)
-        return None if other is None else _rounded(100.0 * other.total)
+        return None if other is None else _in_percent(other.total)
+
+    nearer = {row.channel.channel.name: row.total for row in check.nearer.channels}
+
+    def verdict_of(row: ChannelMisfit) -> Badge:
+        agrees = nearer[row.channel.channel.name] <= check.limit
+        return Badge("agrees") if agrees else Badge("violated", "differs")
 
     def quantity_of(row: ChannelMisfit, value: float) -> Quantity:
         return Quantity(value, row.channel.channel.kind.unit)
@@ -166,15 +210,12 @@ def _channel_table(check: Check, rows: Sequence[ChannelMisfit]) -> Table:
                 "our mean",
                 lambda row: quantity_of(row, row.ours.mean) if row.compares_mean else None,
             ),
-            Column[ChannelMisfit]("misfit", "misfit [%]", lambda row: _rounded(100.0 * row.total)),
-            Column[ChannelMisfit]("second", "against the multibody model [%]", against_second),
-            Column[ChannelMisfit](
-                "verdict",
-                "",
-                lambda row: Badge("agrees") if row.total <= check.limit else Badge("violated", "differs"),
-            ),
+            Column[ChannelMisfit]("misfit", "misfit, lumped model [%]", lambda row: _in_percent(row.total)),
+            Column[ChannelMisfit]("second", "misfit, multibody model [%]", against_second),
+            Column[ChannelMisfit]("verdict", "", verdict_of),
         ),
-        note="A mean is compared where the quantity has one and no export removed it.",
+        note=f"{peaks_words(check)} A mean is compared where the quantity has one and no export removed it. "
+        "The nearer of both programs decides.",
     )
 
 
@@ -201,7 +242,7 @@ def _orders_table(rows: Sequence[ChannelMisfit]) -> Table:
         small = 1e-3 * item.row.scale
         if min(item.row.ours.amplitudes[item.j], item.row.channel.orders.amplitudes[item.j]) < small:
             return None
-        return _rounded(math.degrees(math.atan2(product.imag, product.real)))
+        return round(math.degrees(math.atan2(product.imag, product.real)), 1) + 0.0
 
     def unit(item: _OrderRow) -> str:
         return item.row.channel.channel.kind.unit
@@ -267,7 +308,7 @@ def ladder_content(problem: Problem, ladder: Ladder, limit: float) -> Content:
                 "value",
                 lambda item: item.factor if isinstance(item.factor, str) else _rounded(item.factor),
             ),
-            Column[_StepRow]("misfit", "misfit then [%]", lambda item: _rounded(100.0 * item.misfit)),
+            Column[_StepRow]("misfit", "misfit then [%]", lambda item: _in_percent(item.misfit)),
         ),
     )
     picture = Picture(
@@ -285,7 +326,57 @@ def _speed_content(check: Check) -> Content:
     rpm = check.over_speed.worst_speed * 30.0 / math.pi
     words = f"Misfit {percent(check.misfit)}, limit {percent(check.limit)}; most at {rpm:.0f} rpm."
     picture = Picture("over_speed", "Values over speed.", check.over_speed.table, speed_figure)
-    return Content(words, (picture,))
+    return Content(words, (picture, _speed_table(check, check.over_speed)))
+
+
+class SpeedRow(NamedTuple):
+    """A row of the table of values over speed: one column of the other model, by its worst speed."""
+
+    name: str
+    unit: str
+    misfit: float
+    rpm: float
+    theirs: float
+    ours: float
+
+
+def speed_rows(misfit: SpeedMisfit) -> tuple[SpeedRow, ...]:
+    """Return a row for each column of values over speed."""
+    rows = []
+    for column, ours, share in zip(misfit.theirs.columns, misfit.ours, misfit.by_column, strict=True):
+        place = int(np.nan_to_num(np.abs(column.values - ours)).argmax())
+        rows.append(
+            SpeedRow(
+                name=column.name,
+                unit=QUANTITIES[column.quantity].unit,
+                misfit=float(share),
+                rpm=float(misfit.theirs.speeds[place]) * 30.0 / math.pi,
+                theirs=float(column.values[place]),
+                ours=float(ours[place]),
+            )
+        )
+    return tuple(rows)
+
+
+def _speed_table(check: Check, misfit: SpeedMisfit) -> Table:
+    """Misfit of each column, and both values at the speed at which they differ most."""
+    return table_of(
+        "speeds",
+        "Columns: misfit, and both values at the speed at which they differ most.",
+        speed_rows(misfit),
+        (
+            Column[SpeedRow]("column", "column", lambda row: row.name),
+            Column[SpeedRow]("misfit", "misfit [%]", lambda row: _in_percent(row.misfit)),
+            Column[SpeedRow]("speed", "worst speed", lambda row: row.rpm, "rpm"),
+            Column[SpeedRow]("theirs", "theirs there", lambda row: Quantity(row.theirs, row.unit)),
+            Column[SpeedRow]("ours", "spurcheck there", lambda row: Quantity(row.ours, row.unit)),
+            Column[SpeedRow](
+                "verdict",
+                "",
+                lambda row: Badge("agrees") if row.misfit <= check.limit else Badge("violated", "differs"),
+            ),
+        ),
+    )
 
 
 #: What a failing rung is called in the headline.
@@ -295,6 +386,11 @@ RUNG_WORDS = {
     Rung.MOTION: "in its motion",
     Rung.OVER_SPEED: "over speed",
 }
+
+
+def _in_percent(share: float) -> float | None:
+    """Share in per cent, rounded to three digits; below 0.01 % it is 0."""
+    return 0.0 if abs(share) < 1e-4 else _rounded(100.0 * share)
 
 
 def _rounded(value: float, digits: int = 3) -> float | None:

@@ -115,9 +115,8 @@ def _render(check: Check, parts: tuple[CheckPart, ...], images: dict[str, str], 
         for kind in (Picture, Table)
         for count, block in enumerate((b for b in blocks if isinstance(b, kind)), start=1)
     }
-    operating = check.pair.operating
-    speed = f"{to_stated(operating.pinion_speed, 'rpm'):.4g} rpm"
-    title = f"{check.name} beside {check.pair.name}, {speed}, {operating.pinion_torque:.4g} N m"
+    torque = f"{check.pair.operating.pinion_torque:.4g} N m"
+    title = f"{check.name} beside {check.pair.name}, {_speed_words(check)}, {torque}"
     return (
         environment()
         .get_template("check.html")
@@ -131,3 +130,11 @@ def _render(check: Check, parts: tuple[CheckPart, ...], images: dict[str, str], 
             data=data,
         )
     )
+
+
+def _speed_words(check: Check) -> str:
+    """The speed of the curves, or the range of speeds of values over speed."""
+    if check.over_speed is None:
+        return f"{to_stated(check.pair.operating.pinion_speed, 'rpm'):.4g} rpm"
+    speeds = [to_stated(float(speed), "rpm") for speed in check.over_speed.theirs.speeds]
+    return f"{speeds[0]:.4g} to {speeds[-1]:.4g} rpm"

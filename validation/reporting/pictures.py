@@ -6,7 +6,6 @@ import base64
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from validation.plots.style import save
 from validation.reporting.blocks import Picture
 
 
@@ -17,6 +16,8 @@ def draw_pictures(
 
     ``tell`` is told the done share before each picture.
     """
+    from validation.plots.style import save
+
     folder.mkdir()
     images = {}
     for count, picture in enumerate(pictures):

@@ -31,9 +31,9 @@ from validation.check.ladder import Ladder, climb
 from validation.check.misfit import LIMIT
 from validation.check.motion_curves import MotionCurves
 from validation.check.problem import Problem
-from validation.check.record.channel_comparison import Record
-from validation.check.record.comparing import compare_record
-from validation.check.record.record_comparison import RecordComparison
+from validation.check.record.channel import Record
+from validation.check.record.compare import compare_record
+from validation.check.record.comparison import RecordComparison
 from validation.cross_check.comparison import CrossCheck, crosscheck
 from validation.prediction.budget import error_budget
 from validation.prediction.inputs import given_and_assumed, uncertain_inputs

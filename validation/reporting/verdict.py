@@ -8,7 +8,7 @@ from enum import Enum
 from typing import NamedTuple
 
 from floquet.gear.response import Jump
-from validation.check.record.channel_comparison import Record
+from validation.check.record.channel import Record
 from validation.files.formatting import number, quantity
 from validation.prediction.motion import Prediction
 from validation.prediction.resonance import Resonance

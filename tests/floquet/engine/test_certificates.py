@@ -60,7 +60,8 @@ def test_a_coefficient_that_is_zero_in_the_middle_does_not_spoil_the_scales() ->
 
 def test_the_product_keeps_terms_of_second_order() -> None:
     # Errors so large that the first order alone is not enough: (1 + e)^m - 1 > m e.
-    e, m = 0.05, 40
+    e = 0.05
+    m = 40
     exact, bound = proven_product(np.ones((m, 1, 1)), np.full(m, e))
     assert exact[0, 0] == 1.0
     assert (1.0 + e) ** m - 1.0 <= bound <= 1.001 * ((1.0 + e) ** m - 1.0)  # in one dimension nothing is lost
@@ -70,7 +71,8 @@ def test_decay_beyond_the_squares_of_floating_point_keeps_its_bound() -> None:
     # 150 steps of ten, then 170 of 1/10: the flow after step 149 is 1e-170, whose square is no number.
     steps = np.concatenate([np.full(150, 10.0), np.full(170, 0.1)]).reshape(-1, 1, 1)
     errors = np.zeros(320)
-    errors[149] = 1e-3
+    last_large = 149
+    errors[last_large] = 1e-3
     product, bound = proven_product(steps, errors)
     assert product[0, 0] == pytest.approx(1e-20)
     assert 1e-3 * 1e149 * 1e-170 <= bound < 1e-22
@@ -91,7 +93,8 @@ def test_what_cannot_be_proven_is_refused() -> None:
 
 def test_a_tolerance_between_two_that_are_met_is_met() -> None:
     """Refused steps are measured by what the last grid reached; else the same grid came again."""
-    a, b = -0.8119798362942523, 4.453781979209743
+    a = -0.8119798362942523
+    b = 4.453781979209743
     system = PeriodicSystem(
         lambda t: np.array([[0.0, 1.0], [-(a + b * (np.cos(t) + 2.0 * np.cos(2.0 * t))), 0.0]]), 2.0 * np.pi
     )

@@ -80,7 +80,8 @@ def test_signed_coefficients_are_inside_their_bounds(degree: int) -> None:
     """Sums and products on steps between breaks. One step is an ulp wide, one ends an ulp before a break."""
     rng = np.random.default_rng(degree)
     rows = rng.normal(size=(2, 5)) * (-1.0) ** np.arange(5)
-    a, b = rng.normal(size=3), rng.normal(size=3)
+    a = rng.normal(size=3)
+    b = rng.normal(size=3)
     ends = [0.0, 1.0, 2.0]
     formula = FourierSeries(2.0, 0.3, a.tolist(), b.tolist()) * PiecewisePolynomial(ends, rows) - 0.7
     wave = exact_series(2.0, 0.3, a, b)
@@ -182,7 +183,8 @@ def test_the_tail_of_a_step_is_in_its_bound(a: float, loose: float, sign: float)
 
 def test_an_error_of_the_coefficient_grows_with_the_flow() -> None:
     """x' = (c + e) x: the flow is off by exp(c) (exp(e) - 1), of which the bound takes exp(2 c)."""
-    e, c = 1e-4, 0.9
+    e = 1e-4
+    c = 0.9
     for sign in (-1.0, 1.0):
         A = PeriodicMatrix(sign * c, errors=np.array([[[e]]]))
         flow, bounds = one_step(A, indivisible=True, rtol=1.0)

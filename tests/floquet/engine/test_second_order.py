@@ -22,11 +22,11 @@ UNITS = np.diag(10.0 ** np.arange(4))  # coordinates in other units: micrometres
 def matrices(seed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """M, C, C_1, K and K_1 of a system with gyroscopic and circulatory parts."""
     rng = np.random.default_rng(seed)
-    L, S, *rest = rng.normal(size=(5, 4, 4))
+    L, S, gyroscopic, damping_wave, stiffness_wave = rng.normal(size=(5, 4, 4))
     M = np.tril(L) @ np.tril(L).T + np.eye(4)
-    C = 0.3 * np.eye(4) + 0.1 * rest[0]
-    C1 = 0.05 * rest[1]
-    K1 = rest[2]
+    C = 0.3 * np.eye(4) + 0.1 * gyroscopic
+    C1 = 0.05 * damping_wave
+    K1 = stiffness_wave
     return tuple(UNITS @ B @ UNITS for B in (M, C, C1, 20.0 * np.eye(4) + S + S.T, K1))
 
 
@@ -42,7 +42,8 @@ def test_matrices_in_all_forms_give_the_same_multipliers():
     M, C, C1, K, K1 = matrices(1)
     wave = FourierSeries(PERIOD, 0.0, [1.0])
     jump = PiecewisePolynomial([0.0, 1.0, PERIOD], [[0.0], [1.0]])
-    C_of, K_of = PeriodicMatrix(C, (jump, C1)), PeriodicMatrix(K, (wave, K1))
+    C_of = PeriodicMatrix(C, (jump, C1))
+    K_of = PeriodicMatrix(K, (wave, K1))
 
     def C_at(t: float) -> np.ndarray:
         return C + (t > 1.0) * C1
@@ -109,7 +110,7 @@ def test_a_chart_of_any_family_has_its_labels_and_three_verdicts():
     with pytest.raises(ParameterError, match="labels"):
         scan(family, axes, labels={"k": ("1", "stiffness")})
     with pytest.raises(ParameterError, match="4 multipliers at n = 2"):
-        scan(lambda at: from_second_order(*[np.eye(int(at["n"]))] * 3, 1.0), {"n": [1, 2]})
+        scan(lambda case: from_second_order(*[np.eye(int(case["n"]))] * 3, 1.0), {"n": [1, 2]})
 
 
 def test_a_high_harmonic_is_proven_where_its_own_steps_are_short():

@@ -1,11 +1,13 @@
 """Are charts that refine themselves those of the full grid, over any axes, and their regions named?"""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 
 from floquet import PeriodicSystem, Spectrum, label_regions, monodromy, scan, stability_chart
 from floquet.engine.multipliers import radii_with_bounds, verdicts
-from floquet.engine.refinement import gaps, refine
+from floquet.engine.refinement import NodeValues, gaps, refine
 from floquet.gear import chart as module
 from lumped import load_gear_pair
 from lumped.errors import NumericalError, ParameterError
@@ -141,6 +143,25 @@ def test_cells_are_proven_and_others_evaluated() -> None:
         assert (full.transpose("speed_rpm", "damping_ratio").to_numpy() == wanted)[wanted != 0].all()
 
 
+def test_a_refined_chart_takes_little_more_memory_than_its_result() -> None:
+    """A node of the result has 19 bytes; the number of its region has 4, the mask of regions 1."""
+    pair = load_gear_pair("nasa_28_28").with_(COULOMB)
+
+    def peak(speeds: int) -> int:
+        axes = {
+            "speed_rpm": np.linspace(500.0, 20000.0, speeds),
+            "damping_ratio": np.linspace(0.001, 0.1, 800),
+        }
+        tracemalloc.start()
+        chart = stability_chart(pair, axes, rtol=1e-8)
+        largest = tracemalloc.get_traced_memory()[1]
+        tracemalloc.stop()
+        assert sum(chart[name].dtype.itemsize for name in chart if chart[name].ndim == 2) == 19
+        return largest
+
+    assert (peak(1000) - peak(300)) / (700 * 800) < 26.0
+
+
 def test_slow_axes_tell_their_progress_value_by_value(pair) -> None:
     axes = {"speed_rpm": np.array([4000.0, 5000.0]), "torque": np.array([20.0, 60.0, 90.0])}
     fractions: list[float] = []
@@ -149,7 +170,8 @@ def test_slow_axes_tell_their_progress_value_by_value(pair) -> None:
     assert chart["spectral_radius"].dims == ("speed_rpm", "torque")
 
 
-def test_regions_are_named_measured_and_found_nearest(pair) -> None:
+def test_regions_are_named_measured_and_found_nearest(pair, monkeypatch) -> None:
+    monkeypatch.setattr(module, "_COUNTED", 5000)  # nodes are counted in 33 parts
     varied_pair = pair.with_({"mesh.damping_ratio": 0.01, "operating.pinion_speed": 15000.0})
     chart = stability_chart(varied_pair, rtol=1e-8)
     assert chart.spectral_radius.shape == (801, 201)
@@ -171,7 +193,8 @@ def test_regions_are_named_measured_and_found_nearest(pair) -> None:
 
 
 def mathieu_point(point: dict[str, float]) -> PeriodicSystem:
-    a, q = point["a"], point["q"]
+    a = point["a"]
+    q = point["q"]
     return PeriodicSystem(lambda t: [[0.0, 1.0], [-(a - 2 * q * np.cos(2 * t)), 0.0]], np.pi)
 
 
@@ -202,7 +225,7 @@ def test_a_refined_scan_finds_the_boundaries_of_meissner(shape) -> None:
     delta = np.linspace(0.5, 9.0, shape[0])
     epsilon = np.linspace(0.0, 0.45, shape[1])
     got = scan(
-        lambda at: of_trace(meissner_trace(at["delta"], at["epsilon"])),
+        lambda point: of_trace(meissner_trace(point["delta"], point["epsilon"])),
         {"delta": delta, "epsilon": epsilon},
         refine=True,
     )
@@ -215,13 +238,14 @@ def test_a_refined_scan_finds_the_boundaries_of_meissner(shape) -> None:
 
 def test_refinement_finds_the_tongues_of_mathieu() -> None:
     """To m = 6, undecided where |multiplier| = 1, and be they thinner than a step of a."""
-    a, q = np.linspace(0.5, 42.0, 401), np.linspace(0.0, 12.0, 81)
+    a = np.linspace(0.5, 42.0, 401)
+    q = np.linspace(0.0, 12.0, 81)
 
     def ask(nodes):
         i, j = np.unravel_index(nodes, (a.size, q.size))
         values, errors = mathieu_many(a[i], q[j])
         radius, error = radii_with_bounds(values, errors)
-        return radius, verdicts(radius, error).astype(np.intp), gaps(values)
+        return NodeValues(radius, verdicts(radius, error), gaps(values))
 
     got = refine((a.size, q.size), np.ones(a.size), ask, rows=(0, -1))
     assert got.known.mean() < 0.4

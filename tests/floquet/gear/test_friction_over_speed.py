@@ -9,6 +9,7 @@ from floquet.gear.multipliers import feedback_system, fitted_block
 from lumped import load_gear_pair
 from lumped.errors import LawRangeWarning
 from lumped.friction import LAWS, base
+from lumped.friction.average_coefficient import mean_of_law_two
 from lumped.path_of_contact.friction import contact_path, friction_path_function
 from tests.evidence.floquet.extended import as_periodic_system
 from tests.unlike_pairs import UNLIKE, unlike_pair
@@ -55,6 +56,65 @@ def test_families_give_the_law_of_every_speed(name: str, law: str) -> None:
                 ours = factors[0] * (reference(xi) - family.level * sign) + factors[1] * family.level * sign
             # Both are fits within 1e-10 of the law; the factors are below 5.
             assert np.abs(ours - fitted(xi)).max() < 1e-9
+
+
+#: Pairs with laws whose mean coefficient is that of law II. The bounds of law II move at low speeds, with the
+#: rack at all speeds, where they are far from the pitch point.
+MEANS = [
+    ("heavily_relieved_under_load", "smoothed_coulomb"), ("unlike_teeth_finite_elements", "coulomb"),
+    ("rack_25_degrees_always_pushing", "smoothed_coulomb"),
+]  # fmt: skip
+
+
+@pytest.mark.filterwarnings("ignore::lumped.errors.LawRangeWarning")
+@pytest.mark.parametrize(("name", "law"), MEANS)
+def test_the_mean_coefficient_is_a_line_in_the_logarithm_of_speed_within_a_group(name: str, law: str) -> None:
+    """Between the speeds of a group too. Law II (docs/theory/friction.md) is linear in log10 of the speed."""
+    changes = {"friction.law": law, "friction.coefficient": None, "friction.sharpness": None}
+    variation = GearVariation.of(unlike_pair(name).healthy.with_(changes), supports="springs")
+    speeds = np.linspace(500.0, 20000.0, 101)
+    (family,) = friction_families(variation, speeds)
+    groups = family.smooth_groups(speeds)
+    path = contact_path(variation.pair)
+
+    def bend(rpm: np.ndarray) -> float:
+        """Largest distance of the mean from a line through both ends, over the mean."""
+        mean = [mean_of_law_two(path.at_speed(n * np.pi / 30.0), variation.pair.friction) for n in rpm]
+        line = np.interp(np.log(rpm), np.log(rpm[[0, -1]]), [mean[0], mean[-1]])
+        return float(np.abs(line / mean - 1.0).max())
+
+    assert (np.diff(groups) >= 0).all()
+    for group in range(groups.max() + 1):
+        ends = speeds[groups == group][[0, -1]]
+        assert bend(np.geomspace(*ends, 40)) < 1e-8  # fits of law II are within 1e-10 of mu above 0.01
+    slowest = speeds[groups == groups.max()][0]
+    assert bend(np.geomspace(speeds[0], slowest, 40)) > 1e-7
+    assert groups.max() < 0.4 * speeds.size or name.startswith("rack")
+
+
+@pytest.mark.filterwarnings("ignore::lumped.errors.LawRangeWarning")
+@pytest.mark.parametrize(("name", "law", "least"), [(*MEANS[0], 0.6), (*MEANS[1], 0.9)])
+def test_cells_are_proven_where_the_bounds_of_law_two_do_not_move(name: str, law: str, least: float) -> None:
+    """A proven cell has the verdict of the full grid at random points in it; other cells are unproven."""
+    changes = {"friction.law": law, "friction.coefficient": None, "friction.sharpness": None}
+    pair = unlike_pair(name).healthy.with_(changes)
+    speeds = np.linspace(500.0, 20000.0, 61)
+    axes = {"speed_rpm": speeds, "damping_ratio": np.linspace(0.005, 0.06, 9)}
+    chart = stability_chart(pair, axes, rtol=1e-8, prove=True, supports="springs")
+    cells = chart.cell_verdict.to_numpy()
+    (family,) = friction_families(GearVariation.of(pair, "springs"), speeds)
+    apart = np.diff(family.smooth_groups(speeds)) > 0
+    assert apart.any()
+    assert not cells[apart].any()
+    assert least < chart.proven_share < 1.0
+    rng = np.random.default_rng(2)
+    i = np.flatnonzero((cells != 0).all(axis=1))[::4]
+    points = {
+        "speed_rpm": speeds[i] + rng.uniform(size=i.size) * np.diff(speeds)[i],
+        "damping_ratio": axes["damping_ratio"][:-1] + rng.uniform(0.0, np.diff(axes["damping_ratio"])),
+    }
+    full = stability_chart(pair, points, rtol=1e-8, refine=False, supports="springs")
+    assert (full.verdict.to_numpy() == cells[i]).all()
 
 
 def _pitch(variation: GearVariation) -> float:

@@ -11,8 +11,12 @@ from floquet.gear.multipliers import OffLineOfAction, feedback_system
 from lumped import GearPair, geometry, load_gear_pair, periodic_system
 from lumped.errors import ParameterError
 from lumped.model.averaged import averaged_matrix
+from lumped.model.equations import X_P, Y_P
 from lumped.model.mesh_cycle import mesh_cycle
 from tests.unlike_pairs import UNLIKE, unlike_pair
+
+#: State of the system in the form "mesh": elongation of the mesh and places of both gears, then the rates.
+Q, _, _, DQ, DX_P, _ = range(6)
 
 LAWS = ["none", "coulomb", "benedict_kelley", "xu_kahraman", "smoothed_coulomb", "composite"]
 LIKE_TEETH = [name for name in UNLIKE if unlike_pair(name).healthy is unlike_pair(name)]
@@ -67,7 +71,7 @@ def test_stiffness_variation_keeps_the_mean(pair, factor: float) -> None:
     varied = GearVariation(pair, stiffness_variation=factor, supports="springs")
     total = -gear_pair_system(varied, "mesh").evaluate(times)
     # Row of x_p: m_p x_p'' = -sum N_i, so the q column holds k(t)/m_p whatever the friction.
-    k = total[:, 4, 0] * system.structure.mass[2]
+    k = total[:, DX_P, Q] * system.structure.mass[X_P]
     mean = system.cycle.mean_stiffness
     assert weights @ k / system.period == pytest.approx(mean, rel=1e-12)  # piecewise constant: rounding only
     ratio = 2.0  # double against single contact with the rectangular model
@@ -84,10 +88,11 @@ def test_stiffness_variation_keeps_the_damping_law(pair) -> None:
     unvaried = gear_pair_system(pair, "mesh")
     varied = gear_pair_system(GearVariation(pair, stiffness_variation=0.4, supports="springs"), "mesh")
     times = np.array([0.1, 0.5, 0.9]) * unvaried.period
-    before, after = unvaried.evaluate(times)[:, 4], varied.evaluate(times)[:, 4]
-    f = after[:, 0] / before[:, 0]
+    before = unvaried.evaluate(times)[:, DX_P]
+    after = varied.evaluate(times)[:, DX_P]
+    f = after[:, Q] / before[:, Q]
     assert np.abs(f - 1.0).min() > 0.05
-    assert np.allclose(after[:, 3] / before[:, 3], np.sqrt(f), rtol=1e-12)  # rounding
+    assert np.allclose(after[:, DQ] / before[:, DQ], np.sqrt(f), rtol=1e-12)  # rounding
 
 
 def test_friction_axis_sets_the_mean(pair) -> None:
@@ -148,7 +153,8 @@ def test_breaks_hold_every_knot_of_every_law() -> None:
     named = load_gear_pair("fzg_c").with_(mesh__contact="prescribed", friction__law="benedict_kelley")
     for pair in (with_table(1000, 3.0), named):
         cycle = mesh_cycle(pair)
-        g, e = cycle.geometry, cycle.elements
+        g = cycle.geometry
+        e = cycle.elements
         for law in (e.stiffness, e.damping, e.friction, e.error):
             times = np.mod((law.breaks - g.L_XA) / g.base_pitch, 1.0) * cycle.period
             assert np.abs(times[:, None] - cycle.breaks).min(axis=1).max() <= 1e-13 * cycle.period
@@ -174,7 +180,7 @@ def test_bearings_at_critical_damping_are_within_their_bound(ratio: float) -> No
     values, errors = OffLineOfAction.of(feedback_system(GearVariation(pair, supports="springs"))).multipliers(
         T
     )
-    omega = np.sqrt(system.structure.stiffness[4] / system.structure.mass[4])
+    omega = np.sqrt(system.structure.stiffness[Y_P] / system.structure.mass[Y_P])
     zeta = min(ratio, 1.0)
     root = np.emath.sqrt(zeta**2 - 1.0)
     exact = np.exp(omega * system.period * np.array([-zeta + root, -zeta - root]))

@@ -42,7 +42,7 @@ def test_charts_are_the_general_engine_at_every_speed(slender: GearPair) -> None
     pair = unlike_pair("contact_ratio_2_3_on_shafts")
     axes = {"speed_rpm": [2600.0, 12000.0], "friction_coefficient": [0.1], "torque": [150.0]}
     chart = stability_chart(pair, axes, supports="shafts", rtol=1e-8, store="all")
-    slow = scan(lambda at: gear_pair_multipliers(vary(pair, at, "shafts"), 1e-6, method="gauss"), axes)
+    slow = scan(lambda point: gear_pair_multipliers(vary(pair, point, "shafts"), 1e-6, method="gauss"), axes)
     for values, errors, exact, bounds in zip(
         *(part.values.reshape(2, -1) for c in (chart, slow) for part in (c.multipliers, c.multiplier_errors)),
         strict=True,

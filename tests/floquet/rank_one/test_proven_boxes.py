@@ -81,13 +81,13 @@ def judged(
 
 def varied(kind: str) -> tuple[dict[tuple[int, int], np.ndarray], float]:
     """Terms that vanish in the middle of the patch, and an error of the patch."""
-    random = np.random.default_rng(11).normal(size=(3, 6, 6))
+    first, second, third = np.random.default_rng(11).normal(size=(3, 6, 6))
     return {
-        "one term": ({(1, 0): 0.3 * random[0]}, 0.0),
-        "signed terms": ({(1, 0): -0.3 * random[0], (3, 2): 0.2 * random[1], (0, 3): -0.1 * random[2]}, 0.0),
+        "one term": ({(1, 0): 0.3 * first}, 0.0),
+        "signed terms": ({(1, 0): -0.3 * first, (3, 2): 0.2 * second, (0, 3): -0.1 * third}, 0.0),
         # Beyond the terms whose signs count; of their restriction to a part of the patch some are negative.
-        "high terms": ({(11, 0): -0.3 * random[0], (0, 9): 0.2 * random[1], (17, 5): random[2]}, 0.0),
-        "error": ({(1, 0): 1e-9 * random[0]}, 1e-5),
+        "high terms": ({(11, 0): -0.3 * first, (0, 9): 0.2 * second, (17, 5): third}, 0.0),
+        "error": ({(1, 0): 1e-9 * first}, 1e-5),
     }[kind]
 
 

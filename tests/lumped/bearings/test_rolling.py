@@ -9,7 +9,7 @@ import pytest
 import lumped
 from lumped.bearings.rolling import across_ratio, assumed_bearing, shaft_diameter, stiffness_along
 from lumped.errors import ParameterError
-from lumped.model.equations import structure
+from lumped.model.equations import X_P, Y_P, structure
 from multibody.contact.machine import bearing_constants
 from tests.unlike_pairs import unlike_pair
 from validation.exchange.new_pair_file import new_pair, reasons
@@ -19,14 +19,14 @@ from validation.exchange.new_pair_file import new_pair, reasons
 APPROACH = {"ball": (0.00044, 2 / 3, 1 / 3), "roller": (0.000077, 0.9, 0.8)}
 
 
-def by_contacts(kind, number, size, load, angle, turned):
+def by_contacts(kind, number, size, load, angle, shift):
     """Slopes dF/d(delta) along and across the load [N/m] of contacts without clearance, rings rigid.
 
     ``turned``: angle of the first element from the direction of the load, as a share of the pitch.
     """
     constant, power, of_size = APPROACH[kind]
     compliance = 1e-3 * constant / (1e3 * size) ** of_size  # approach [m] = compliance * Q^power
-    psi = 2.0 * math.pi * (np.arange(number) + turned) / number
+    psi = 2.0 * math.pi * (np.arange(number) + shift) / number
     push = np.maximum(np.cos(psi), 0.0) * math.cos(angle)  # approach over the displacement along the load
     exponent = 1.0 / power
     unit = float(np.sum((push / compliance) ** exponent * np.cos(psi)) * math.cos(angle))
@@ -46,8 +46,8 @@ def by_contacts(kind, number, size, load, angle, turned):
 ])  # fmt: skip
 def test_along_the_load_the_formula_is_the_slope_of_contacts_that_share_it(kind, number, size, load, angle):
     """Constants, exponents and units: both formulas follow from Palmgren's approach, within 4 %."""
-    turned = [by_contacts(kind, number, size, load, angle, t)[0] for t in (0.0, 0.25, 0.5, 0.75)]
-    assert stiffness_along(kind, number, size, load, angle) == pytest.approx(np.mean(turned), rel=0.04)
+    stiffnesses = [by_contacts(kind, number, size, load, angle, t)[0] for t in (0.0, 0.25, 0.5, 0.75)]
+    assert stiffness_along(kind, number, size, load, angle) == pytest.approx(np.mean(stiffnesses), rel=0.04)
 
 
 @pytest.mark.parametrize("kind", ["ball", "roller"])
@@ -72,7 +72,8 @@ def test_a_shaft_has_30_MPa_and_its_bearings_elements_of_three_tenths():
     for torque in (0.02, 1.2e4):
         diameter = shaft_diameter(torque)
         assert 16.0 * torque / (math.pi * diameter**3) == pytest.approx(30e6)
-        assert assumed_bearing(torque)[2] == pytest.approx(0.3 * diameter)
+        _, _, element_size = assumed_bearing(torque)
+        assert element_size == pytest.approx(0.3 * diameter)
     assert [assumed_bearing(t)[0] for t in (0.02, 1.2e4)] == ["ball", "roller"]
     assert assumed_bearing(0.02, "roller")[:2] == ("roller", 12)
 
@@ -111,9 +112,11 @@ def test_the_stiffness_follows_the_torque_in_every_reader(name, kind, growth):
     more = pair.with_(torque=8.0 * pair.operating.pinion_torque)
     force = pair.operating.pinion_torque / pair.geometry.base_radius_pinion
     along = 3.0 * stiffness_along(kind, 9, 11e-3, force / 3.0, math.radians(12.0))
-    assert structure(pair).stiffness[2] == pytest.approx(along)
-    assert structure(pair).stiffness[4] == pytest.approx(across_ratio(kind, 9) * along)
-    assert structure(more).stiffness[[2, 4]] == pytest.approx(growth * structure(pair).stiffness[[2, 4]])
+    assert structure(pair).stiffness[X_P] == pytest.approx(along)
+    assert structure(pair).stiffness[Y_P] == pytest.approx(across_ratio(kind, 9) * along)
+    assert structure(more).stiffness[[X_P, Y_P]] == pytest.approx(
+        growth * structure(pair).stiffness[[X_P, Y_P]]
+    )
     assert structure(more).stiffness[[3, 5]] == pytest.approx(structure(pair).stiffness[[3, 5]])  # springs
     other = bearing_constants(pair, structure(pair).mass[2:4])[0]
     assert other.T.ravel() == pytest.approx(structure(pair).stiffness[2:])
@@ -134,9 +137,12 @@ def test_a_pair_made_of_the_bearings_of_another_leaves_that_one_as_it_was():
 
 def test_a_named_stiffness_makes_springs_that_act_as_the_bearings_did_and_a_type_ends_springs():
     pair = new_pair("25/103", 1.5, 12, 1500, 10)
-    own = pair.bearings.gear
+    gear_bearings = pair.bearings.gear
     springs = pair.with_({"bearings.gear.loa_stiffness": 3e8}).bearings.gear
-    assert (springs.loa_stiffness, springs.oloa_stiffness) == (3e8, pytest.approx(own.oloa_stiffness))
+    assert (springs.loa_stiffness, springs.oloa_stiffness) == (
+        3e8,
+        pytest.approx(gear_bearings.oloa_stiffness),
+    )
     rolling = lumped.load_gear_pair("fzg_c").with_({
         "bearings.gear.type": "roller", "bearings.gear.number": 12, "bearings.gear.size": "9 mm",
     })  # fmt: skip

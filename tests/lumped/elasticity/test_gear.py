@@ -23,19 +23,19 @@ def test_error_falls_with_the_mesh_and_the_estimate_covers_it():
     teeth = 28
     profile = ToothProfile(teeth, 1.0, math.radians(20.0), 0.0, 1.25, 0.38)
     bore = profile.root_radius / 3.0
-    at = np.array([2.4, 4.8, 6.6])
-    own = {
-        size: np.diag(compliances(meshed(profile, 0.0, bore, size), NU, teeth, at, 1, "free")[0])
+    lengths = np.array([2.4, 4.8, 6.6])
+    by_size = {
+        size: np.diag(compliances(meshed(profile, 0.0, bore, size), NU, teeth, lengths, 1, "free")[0])
         for size in (0.4, 0.2, 0.1)
     }
-    steps = abs(own[0.4] - own[0.2]), abs(own[0.2] - own[0.1])
+    steps = abs(by_size[0.4] - by_size[0.2]), abs(by_size[0.2] - by_size[0.1])
     # Quadratic elements: order 3 to 4 where the fields are smooth, less by the curvature under the load.
     assert np.log2(steps[0].sum() / steps[1].sum()) > 2.0
     gear = PlaneGear(profile, 15.0, bore, NU, "free", 1)
-    found, rough = (flank_compliance(gear, size).deflection(at) for size in (FINE, COARSE))
-    off = abs(found - own[0.1])
-    assert np.all(off < abs(found - rough))
-    assert np.all(abs(found - rough) < 4e-3 * own[0.1])
+    fine, coarse = (flank_compliance(gear, size).deflection(lengths) for size in (FINE, COARSE))
+    error = abs(fine - by_size[0.1])
+    assert np.all(error < abs(fine - coarse))
+    assert np.all(abs(fine - coarse) < 4e-3 * by_size[0.1])
 
 
 def test_teeth_that_cannot_be_meshed_are_refused():
@@ -58,28 +58,30 @@ def test_results_are_cached_whole_or_not_at_all(folder):
         calls.append(None)
         return {"a": np.arange(3.0), "b": np.array(2.0)}
 
-    def asked(inputs=b"gear"):
-        found = cached("elasticity", [], inputs, compute)
-        assert found["a"].tolist() == [0.0, 1.0, 2.0]
-        assert found["b"] == 2.0
+    def number_of_calls(inputs=b"gear"):
+        arrays = cached("elasticity", [], inputs, compute)
+        assert arrays["a"].tolist() == [0.0, 1.0, 2.0]
+        assert arrays["b"] == 2.0
         return len(calls)
 
     with ThreadPoolExecutor(4) as pool:  # side by side
-        list(pool.map(lambda _: asked(), range(8)))
+        list(pool.map(lambda _: number_of_calls(), range(8)))
     (file,) = folder.iterdir()
     calls.clear()
-    assert asked() == 0
-    assert asked(b"another gear") == 1
-    whole = file.read_bytes()
-    for number, broken in enumerate((b"", whole[:-40], whole[:200] + b"?" + whole[201:], b"no file"), 2):
+    assert number_of_calls() == 0
+    assert number_of_calls(b"another gear") == 1
+    content = file.read_bytes()
+    for number, broken in enumerate(
+        (b"", content[:-40], content[:200] + b"?" + content[201:], b"no file"), 2
+    ):
         file.write_bytes(broken)
-        assert asked() == number
-    assert asked() == number
+        assert number_of_calls() == number
+    assert number_of_calls() == number
     for path in folder.iterdir():
         path.unlink()
     folder.rmdir()
     folder.write_text("no folder")
-    assert asked() == number + 1
+    assert number_of_calls() == number + 1
 
 
 def test_a_changed_tooth_is_another_result(folder, monkeypatch):
@@ -118,7 +120,7 @@ def test_blas_has_one_thread_while_it_solves_and_its_own_number_afterwards(monke
 
     monkeypatch.setattr(module, "compliances", solve)
     monkeypatch.setattr(module, "cached", lambda folder, sources, inputs, compute: compute())
-    own = threads()
+    thread_counts = threads()
     for library in libraries:
         library.set(2)
     try:
@@ -129,7 +131,7 @@ def test_blas_has_one_thread_while_it_solves_and_its_own_number_afterwards(monke
         assert during == [[1, 1]]
         assert threads() == [2, 2]
     finally:
-        for library, count in zip(libraries, own, strict=True):
+        for library, count in zip(libraries, thread_counts, strict=True):
             library.set(count)
 
 
@@ -150,15 +152,15 @@ def test_load_and_point_may_change_places(free):
 def test_uniform_strain_meets_no_resistance_inside_and_the_area_is_the_mass(coarse):
     matrix, heavy = assembled(coarse.nodes, coarse.elements, NU)
     strain = np.array([[0.3, 0.7], [-0.2, 0.5]])
-    moved = (coarse.nodes @ strain.T).ravel()
-    force = (matrix @ moved).reshape(-1, 2)
+    displacement = (coarse.nodes @ strain.T).ravel()
+    force = (matrix @ displacement).reshape(-1, 2)
     border = np.unique(np.concatenate([coarse.surface.ravel(), coarse.behind, coarse.ahead, coarse.bore]))
     inside = np.setdiff1d(np.arange(len(coarse.nodes)), border)
     assert abs(force[inside]).max() < 1e-12
     # The work of uniform stress is the energy density times the area.
     area = heavy[::2, 0].sum()
     voigt = np.array([0.3, 0.5, 0.5])
-    assert moved @ force.ravel() == pytest.approx(voigt @ plane_law(NU) @ voigt * area, rel=1e-12)
+    assert displacement @ force.ravel() == pytest.approx(voigt @ plane_law(NU) @ voigt * area, rel=1e-12)
     ends = coarse.nodes[coarse.surface[:, [0, 2]]]
     polygon = 0.5 * (ends[:, 0, 0] * ends[:, 1, 1] - ends[:, 1, 0] * ends[:, 0, 1]).sum()
     bore = 0.5 * math.hypot(*coarse.nodes[coarse.bore[0]]) ** 2 * 2.0 * math.pi / TEETH
@@ -170,10 +172,10 @@ def test_the_ring_twists_as_lame_says(small):
     # z r_b^2 (1/r_1^2 - 1/r_2^2)/(4 pi G), up to what the teeth feel of the bore, (1/h)^z.
     bores = small.root_radius / np.array([3.0, 6.0])
     lengths = np.array([2.0])
-    wide, narrow = (
+    wide_bore, narrow_bore = (
         compliances(meshed(small, 0.5, bore, 0.3), NU, TEETH, lengths, TEETH - 1, "clamped").sum()
         for bore in bores
     )
     shear = 0.5 / (1.0 + NU)
     lame = TEETH * small.base_radius**2 * (bores[1] ** -2 - bores[0] ** -2) / (4.0 * math.pi * shear)
-    assert narrow - wide == pytest.approx(lame, rel=5e-4)
+    assert narrow_bore - wide_bore == pytest.approx(lame, rel=5e-4)

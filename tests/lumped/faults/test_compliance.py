@@ -29,11 +29,11 @@ def test_edge_crack_beside_finite_elements(nasa, depth):
     assert short / shorter == pytest.approx(4.0, rel=0.01)
 
 
-@pytest.mark.parametrize(("which", "gear"), [(0, "pinion"), (1, "gear")])
-def test_a_crack_is_in_the_material_and_width_of_its_gear(unlike, which, gear):
+@pytest.mark.parametrize(("gear_index", "gear"), [(0, "pinion"), (1, "gear")])
+def test_a_crack_is_in_the_material_and_width_of_its_gear(unlike, gear_index, gear):
     """24/(E b t^2) S(x) l^2: strip of thickness t under the moment of the load, x = depth sin(angle)/t."""
-    own = getattr(unlike, gear)
-    flank = unlike.flank(which)
+    wheel = getattr(unlike, gear)
+    flank = unlike.flank(gear_index)
     u, half = root_section(flank.wheel.tooth)
     place = np.array([0.9 * flank.tip])
     at_u, at_h, _, angle = flank.wheel.tooth.involute_points(place)
@@ -41,15 +41,15 @@ def test_a_crack_is_in_the_material_and_width_of_its_gear(unlike, which, gear):
     x = 0.6e-3 * math.sin(math.radians(50.0)) / (2.0 * half)
     strip = (x / (1.0 - x)) ** 2 * (5.93 - 19.69 * x + 37.14 * x**2 - 35.84 * x**3 + 13.12 * x**4)  # Tada
     width = min(unlike.pinion.face_width, unlike.gear.face_width)
-    expected = 24.0 / (own.youngs_modulus * width * (2.0 * half) ** 2) * strip * arm**2
-    found = Crack(tooth=1, depth=0.6, angle=50).compliance(flank, place)
-    np.testing.assert_allclose(found, expected, rtol=1e-12)
+    expected = 24.0 / (wheel.youngs_modulus * width * (2.0 * half) ** 2) * strip * arm**2
+    compliance = Crack(tooth=1, depth=0.6, angle=50).compliance(flank, place)
+    np.testing.assert_allclose(compliance, expected, rtol=1e-12)
 
 
-@pytest.mark.parametrize(("which", "gear"), [(0, "pinion"), (1, "gear")])
-def test_a_pit_narrows_the_contact_of_both_materials(unlike, which, gear):
+@pytest.mark.parametrize(("gear_index", "gear"), [(0, "pinion"), (1, "gear")])
+def test_a_pit_narrows_the_contact_of_both_materials(unlike, gear_index, gear):
     """2/pi sum((1 - nu^2)/E) over the width b - w in the place of b, between its roll angles."""
-    flank = unlike.flank(which)
+    flank = unlike.flank(gear_index)
     hand = ByHand(unlike, gear)
     width = min(unlike.pinion.face_width, unlike.gear.face_width)
     low, high = hand.roll(0.3 * hand.tip_length), hand.roll(0.6 * hand.tip_length)

@@ -31,17 +31,17 @@ def test_a_measured_file_is_its_lists_in_the_order_of_the_teeth(nasa, tmp_path):
     (tmp_path / "pair.toml").write_text(
         nasa.to_toml().replace("[gear]", "[pinion.deviations]\nfile = 'd.csv'\n\n[gear]")
     )
-    found = load_gear_pair(tmp_path / "pair.toml").pinion.deviations
-    assert [value.to("um") for value in found.index] == INDEX
-    assert [value.to("um") for value in found.profile_slope] == [-value for value in INDEX]
+    deviations = load_gear_pair(tmp_path / "pair.toml").pinion.deviations
+    assert [value.to("um") for value in deviations.index] == INDEX
+    assert [value.to("um") for value in deviations.profile_slope] == [-value for value in INDEX]
 
 
 @pytest.mark.parametrize("code", ["utf-8", "utf-16-le", "utf-16-be"])
 def test_a_file_of_a_spreadsheet_with_a_mark_and_decimal_commas_is_read(nasa, tmp_path, code):
     rows = [f"{j + 1};{value};".replace(".", ",") for j, value in enumerate(INDEX)]
     (tmp_path / "d.csv").write_text("\ufeff" + "\r\n".join(["Tooth;index_um;", *rows, ""]), encoding=code)
-    found = nasa.with_({"pinion.deviations": {"file": str(tmp_path / "d.csv")}}).pinion.deviations
-    assert [value.to("um") for value in found.index] == INDEX
+    deviations = nasa.with_({"pinion.deviations": {"file": str(tmp_path / "d.csv")}}).pinion.deviations
+    assert [value.to("um") for value in deviations.index] == INDEX
 
 
 def test_the_healthy_twin_has_like_teeth_and_a_like_pair_is_its_own(nasa):

@@ -105,6 +105,28 @@ def test_a_string_with_the_stated_unit_is_the_bare_number():
             assert to_si(text, unit) == to_si(number, unit), text
 
 
+@pytest.mark.parametrize("unit", [unit for unit in UNITS if unit not in ("1", "degC")])
+def test_a_unit_of_files_gives_the_bits_of_the_unit_parser(unit):
+    """Text with a sign of multiplication is read by pint, text with a blank without pint."""
+    for named in (name for name in UNITS if UNITS[name].si == UNITS[unit].si):
+        for number in ("1", "0.1", "-3.175", "2.7e-5", "88.9", "1e3", "123456.789"):
+            assert to_si(f"{number} {named}", unit) == to_si(f"{number}*{named}", unit), named
+
+
+@pytest.mark.parametrize("number", ["70", "-0.1", "36.6", "1e2"])
+def test_a_temperature_has_the_bits_of_the_unit_parser(number):
+    assert to_si(f"{number} degC", "degC") == to_si(f"{number} °C", "degC")
+
+
+def test_a_unit_of_files_needs_no_unit_parser(monkeypatch):
+    monkeypatch.setattr("lumped.fields.units._registry", None)
+    assert to_si("20 mm", "um") == 0.02
+    assert to_si("70 degC", "degC") == 343.15
+    assert to_si(" -2e3 N*m", "N*m") == -2000.0
+    with pytest.raises(TypeError, match="not callable"):
+        to_si("20 inch", "mm")
+
+
 @pytest.mark.parametrize("unit", UNITS)
 def test_example_of_every_unit_is_accepted(unit):
     assert math.isfinite(to_si(UNITS[unit].example, unit))

@@ -52,8 +52,8 @@ def test_what_laws_read_of_the_pair(unlike):
     squares = unlike.pinion.roughness**2 + unlike.gear.roughness**2
     assert path.composite_roughness == pytest.approx(math.sqrt(squares), rel=1e-14)
     assert path.pitch_line_velocity == pytest.approx(by_hand.pitch_line, rel=ROUNDING)
-    given = unlike.with_(friction__composite_roughness=0.2)
-    assert contact_path(given).composite_roughness == pytest.approx(0.2e-6, rel=1e-14)
+    rough_pair = unlike.with_(friction__composite_roughness=0.2)
+    assert contact_path(rough_pair).composite_roughness == pytest.approx(0.2e-6, rel=1e-14)
 
 
 def test_the_film_of_an_oil_that_is_not_the_default():

@@ -213,8 +213,8 @@ def test_beyond_the_edge_of_an_undercut_mu_is_that_at_the_edge(name):
         span = path.L_XD - path.L_XA
         cut = replace(path, edge_pinion=path.L_XA + 0.1 * span, edge_gear=path.L_XY - path.L_XD + 0.2 * span)
         xi = np.array([path.L_XA, cut.edge_pinion, path.L_XY - cut.edge_gear, path.L_XD])
-        mu = law.signed(xi, cut, settings)
-        assert (mu[0], mu[3]) == (mu[1], mu[2])
+        at_start, at_edge_pinion, at_edge_gear, at_end = law.signed(xi, cut, settings)
+        assert (at_start, at_end) == (at_edge_pinion, at_edge_gear)
 
 
 @pytest.mark.parametrize("celsius", TEMPERATURES)
@@ -226,7 +226,8 @@ def test_the_bound_covers_the_error_of_the_mean_of_law_two(law, celsius):
             "friction.law": law, "friction.coefficient": None, "lubricant.viscosity": None,
             "lubricant.viscosity_law": {"iso_vg": 68, "temperature": celsius},
         })  # fmt: skip
-        path, settings = varied.nominal_contact, varied.friction
+        path = varied.nominal_contact
+        settings = varied.friction
         if not LAWS[law].reads_average(path, settings):
             continue
         two = fit_signed(LAWS["benedict_kelley"], path, settings)

@@ -38,7 +38,7 @@ def exact_errors(function, law, path, settings, side):
         sqrt=lambda x: arb(x).sqrt(), arctan=lambda x: arb(x).atan(),
     )  # fmt: skip
     ctx.prec = 256
-    found = []
+    largest_errors = []
     for j, low in enumerate(function.breaks[:-1]):
         width = arb(function.breaks[j + 1]) - arb(low)
         fit = arb_poly(function.coefficients[::-1, j].tolist())
@@ -48,8 +48,8 @@ def exact_errors(function, law, path, settings, side):
             ).lower()
             for share in map(arb, _PLACES)
         ]
-        found.append(max(map(float, errors)) * (1.0 - 1e-15))
-    return np.array(found)
+        largest_errors.append(max(map(float, errors)) * (1.0 - 1e-15))
+    return np.array(largest_errors)
 
 
 @pytest.mark.parametrize("law", [name for name, law in LAWS.items() if law.analytic])
@@ -171,14 +171,14 @@ def test_ellipses_come_half_as_near_as_their_piece():
         around = Ellipses.clear_of(low, high, [point])
         for k, r in enumerate(around.ratio):
             boundary = 0.5 * (low[k] + high[k]) + 0.25 * (high[k] - low[k]) * (r * w + 1.0 / (r * w))
-            away = np.abs(boundary - point)
+            distance = np.abs(boundary - point)
             piece = abs(np.clip(np.real(point), low[k], high[k]) - point)
-            assert away.min() >= 0.5 * piece * (1.0 - 1e-6)
+            assert distance.min() >= 0.5 * piece * (1.0 - 1e-6)
             if np.imag(point) == 0.0 and 1.0 < r < 2.5:
-                assert away.min() == pytest.approx(0.5 * piece, rel=1e-6)
+                assert distance.min() == pytest.approx(0.5 * piece, rel=1e-6)
             nearest, farthest = (x[k] for x in around.distances(complex(point)))
-            assert nearest <= away.min() * (1.0 + 1e-12)
-            assert farthest >= away.max() * (1.0 - 1e-12)
+            assert nearest <= distance.min() * (1.0 + 1e-12)
+            assert farthest >= distance.max() * (1.0 - 1e-12)
             assert around.reach[k] == pytest.approx(np.abs(boundary - around.centre[k]).max(), rel=1e-12)
 
 
@@ -199,9 +199,9 @@ def test_the_law_is_at_most_its_bound_in_the_ellipse(unlike, law, side):
         around = Ellipses(0.5 * (ends[:-1] + ends[1:]), 0.5 * np.diff(ends), ratio)
         w = ratio[:, None] * np.exp(2j * np.pi * np.arange(100) / 100)
         z = around.centre[:, None] + 0.5 * around.half[:, None] * (w + 1.0 / w)
-        held = np.abs(law_of(law, around.centre, path, settings, side)) > settings.maximum
+        limited = np.abs(law_of(law, around.centre, path, settings, side)) > settings.maximum
         inside = np.abs(law_of(law, z, path, settings, side)).max(axis=1) <= most
-        assert (inside | (held & (law == "benedict_kelley"))).all()
+        assert (inside | (limited & (law == "benedict_kelley"))).all()
         slow, fast = entraining(around, path)
         speed = path.omega_pinion * z + path.omega_gear * (path.L_XY - z)
         assert (np.abs(speed).max(axis=1) <= fast * (1.0 + 1e-12)).all()

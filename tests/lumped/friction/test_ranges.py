@@ -35,18 +35,18 @@ def slow():
     ("iso_14179", "unit_load"),
 ])  # fmt: skip
 def test_a_slow_small_pair_is_outside_and_the_warning_says_how_far(slow, law, quantity):
-    (found,) = (v for v in law_range_violations(slow, law) if v.range.quantity == quantity)
+    (violation,) = (v for v in law_range_violations(slow, law) if v.range.quantity == quantity)
     function = friction_path_function(slow, law)
     path = contact_path(slow)
     xi = np.linspace(path.L_XA, path.L_XD, 203)[1:-1]
-    assert found.largest == pytest.approx(np.abs(function(xi)).max(), abs=1e-9)
-    assert found.share == 1.0
-    with pytest.warns(LawRangeWarning) as told:
+    assert violation.largest == pytest.approx(np.abs(function(xi)).max(), abs=1e-9)
+    assert violation.share == 1.0
+    with pytest.warns(LawRangeWarning) as caught:
         friction_path_function(slow, law)
-    (one,) = (w.message for w in told if w.message.subject == f"{LAWS[law].title}: {quantity}")
-    assert found.range.words in str(one)
-    assert f"{found.minimum:.4g}" in str(one)
-    assert f"mu is up to {found.largest:.2g}" in str(one)
+    (one,) = (w.message for w in caught if w.message.subject == f"{LAWS[law].title}: {quantity}")
+    assert violation.range.words in str(one)
+    assert f"{violation.minimum:.4g}" in str(one)
+    assert f"mu is up to {violation.largest:.2g}" in str(one)
 
 
 @pytest.mark.parametrize("name", ["fzg_c", "nasa_28_28", "high_contact_ratio_29_47"])
@@ -59,11 +59,11 @@ def test_ordinary_pairs_are_inside(name):
 
 def test_a_sweep_warns_once_and_of_its_worst_speed(slow):
     speeds = [30.0, 20.0, 10.0]
-    with pytest.warns(LawRangeWarning) as told:
+    with pytest.warns(LawRangeWarning) as caught:
         lumped.speed_sweep(slow, speeds, samples_per_cycle=32)
-    subjects = [w.message.subject for w in told]
+    subjects = [w.message.subject for w in caught]
     assert len(subjects) == len(set(subjects)) >= 2
-    (one,) = (w.message for w in told if w.message.subject.endswith("mean_rolling_velocity"))
+    (one,) = (w.message for w in caught if w.message.subject.endswith("mean_rolling_velocity"))
     each = [slow.with_(operating__pinion_speed=rpm) for rpm in speeds]
     largest = [
         v.largest
@@ -77,9 +77,9 @@ def test_a_sweep_warns_once_and_of_its_worst_speed(slow):
 
 def test_only_positions_outside_give_the_largest_coefficient():
     limits = ValidityRange("speed", "m/s", None, 2.0, "test")
-    (found,) = range_violations("law", (limits,), {"speed": [1.0, 3.0, 4.0]}, [-0.9, 0.1, -0.3])
-    assert (found.largest, found.share) == (0.3, pytest.approx(2.0 / 3.0))
-    assert str(found) == (
+    (violation,) = range_violations("law", (limits,), {"speed": [1.0, 3.0, 4.0]}, [-0.9, 0.1, -0.3])
+    assert (violation.largest, violation.share) == (0.3, pytest.approx(2.0 / 3.0))
+    assert str(violation) == (
         "law: speed runs from 1 to 4 m/s, outside speed <= 2 m/s over 66.7 % of the positions, "
         "where mu is up to 0.3 (test)"
     )

@@ -88,8 +88,8 @@ def test_the_pitch_line_is_that_of_the_operating_circles():
 
 
 def test_fzg_c_shifts_and_centre_distance_belong_together():
-    given = load_gear_pair("fzg_c")
-    free = geometry(given.with_(centre_distance=None, mesh__backlash=0))
+    pair = load_gear_pair("fzg_c")
+    free = geometry(pair.with_(centre_distance=None, mesh__backlash=0))
     # 91.5 mm with four-digit shifts: the centre distance free of backlash agrees to about a micrometre.
     assert free.centre_distance == pytest.approx(91.5e-3, abs=2e-6)
     assert free.normal_backlash == pytest.approx(0.0, abs=1e-15)
@@ -161,7 +161,8 @@ def test_any_pair_that_exists(pair):
 @given(pair=pairs)
 def test_exchanging_the_gears_mirrors_the_line_of_action(pair):
     assume(pair is not None)
-    g, h = geometry(pair), geometry(swapped(pair))
+    g = geometry(pair)
+    h = geometry(swapped(pair))
     close = {"rel": 1e-12, "abs": 1e-15}  # differences of lengths near 0.03 m
     assert pytest.approx(g.L_XY, **close) == h.L_XY
     for mine, theirs in (("L_XA", "L_XD"), ("L_XB", "L_XC"), ("L_XP", "L_XP"), ("L_XD", "L_XA")):

@@ -108,13 +108,13 @@ def test_form_circle_against_cutting(z, degrees, shift, dedendum, fillet, underc
             assert depth[-1] < -1e-9  # material is left over: no involute yet
     if undercut:
         # The crossing is transversal: locate it to the accuracy of the search.
-        found = brentq(
+        form_by_cutting = brentq(
             lambda radius: cut_depth(np.array([radius]), z, alpha, shift, dedendum, fillet)[0] - 1e-8,
             form - 2e-3,
             form + 1e-4,
             xtol=1e-9,
         )
-        assert found == pytest.approx(form, abs=2e-5)
+        assert form_by_cutting == pytest.approx(form, abs=2e-5)
 
 
 @pytest.mark.parametrize(("z", "degrees", "shift", "dedendum", "fillet", "undercut"), RACKS)

@@ -63,11 +63,11 @@ def test_span_is_the_distance_of_planes_that_touch_two_flanks(tooth):
         return u * math.sin(half_turn) + h * math.cos(half_turn)
 
     # A plane parallel to the symmetry line touches the flank where it is farthest from that line.
-    found = minimize_scalar(lambda s: -across(s), bounds=(0.0, 3.0 * tooth.base_radius), method="bounded",
+    optimum = minimize_scalar(lambda s: -across(s), bounds=(0.0, 3.0 * tooth.base_radius), method="bounded",
                             options={"xatol": 1e-10 * tooth.module})  # fmt: skip
-    assert 2.0 * across(found.x) == pytest.approx(span(tooth, k), rel=1e-10)
+    assert 2.0 * across(optimum.x) == pytest.approx(span(tooth, k), rel=1e-10)
     # They touch where half the span is the length along the base tangent.
-    assert found.x == pytest.approx(0.5 * span(tooth, k), rel=1e-4)  # of a flat optimum
+    assert optimum.x == pytest.approx(0.5 * span(tooth, k), rel=1e-4)  # of a flat optimum
 
 
 @settings(max_examples=60, deadline=None)
@@ -203,12 +203,12 @@ def test_the_text_has_a_line_for_every_row():
 
 def test_a_row_knows_which_field_decides_it():
     # The tips of this pair are given; those of a pair without them are assumed, and change with their field.
-    given = load_gear_pair("fzg_c")
+    pair = load_gear_pair("fzg_c")
     free = load_gear_pair("nasa_28_28")
-    for row in gear_table(given).rows():
+    for row in gear_table(pair).rows():
         assert len(row.decided_by) in (0, len(row.values)), row.label
         for path in row.decided_by:
-            given.state(path)  # raises for a name that is no field
-    tips = next(row for row in gear_table(given).rows() if row.symbol == "d_a")
-    assert [given.state(path).value for path in tips.decided_by] == ["known", "known"]
+            pair.state(path)  # raises for a name that is no field
+    tips = next(row for row in gear_table(pair).rows() if row.symbol == "d_a")
+    assert [pair.state(path).value for path in tips.decided_by] == ["known", "known"]
     assert [free.state(path).value for path in tips.decided_by] == ["assumed", "assumed"]

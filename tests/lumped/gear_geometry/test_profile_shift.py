@@ -75,8 +75,8 @@ def test_the_worked_example_has_its_printed_tips_and_contact_ratio():
     assert pair.geometry.centre_distance * 1e3 == pytest.approx(WORKED["centre_distance"], abs=0.5e-4)
     assert pair.geometry.contact_ratio == pytest.approx(WORKED["contact_ratio"], abs=0.5e-3)
     # Without alteration it has the contact ratio that a gear program would not have: 1.348.
-    whole = pair.with_({"pinion.tip_alteration": 0, "gear.tip_alteration": 0})
-    assert whole.geometry.contact_ratio == pytest.approx(1.348, abs=0.5e-3)
+    unaltered = pair.with_({"pinion.tip_alteration": 0, "gear.tip_alteration": 0})
+    assert unaltered.geometry.contact_ratio == pytest.approx(1.348, abs=0.5e-3)
 
 
 @pytest.mark.parametrize("name", WITHOUT_TIPS)

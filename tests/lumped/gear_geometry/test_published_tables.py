@@ -28,7 +28,8 @@ TABLES = {path.stem: tomllib.loads(path.read_text(encoding="utf-8")) for path in
 
 def is_printed(value: float, text: str) -> bool:
     """Whether a value rounds to a printed one: half of its last digit, and the rounding of doubles."""
-    decimals = len(text.partition(".")[2])
+    _, _, decimals_of_text = text.partition(".")
+    decimals = len(decimals_of_text)
     return abs(value - float(text)) <= 0.5 * 10.0**-decimals + 1e-9
 
 
@@ -69,12 +70,12 @@ def of_pair(pair, table):
     }
 
 
-def of_gear(pair, table, which):
+def of_gear(pair, table, gear_index):
     """Printed quantities of one gear that the table does not name, in mm."""
     g = pair.geometry
-    one = (table.pinion, table.gear)[which]
-    tooth = pair.wheels[which].tooth
-    contact = (g.L_XA, g.L_XY - g.L_XD)[which]
+    one = (table.pinion, table.gear)[gear_index]
+    tooth = pair.wheels[gear_index].tooth
+    contact = (g.L_XA, g.L_XY - g.L_XD)[gear_index]
     shifted = tooth.reference_radius + tooth.profile_shift * tooth.module
     radii = {
         f"{name}_radius": 5e2 * getattr(one, f"{name}_diameter")
@@ -102,12 +103,12 @@ def test_every_printed_number_is_met_to_its_last_digit(name):
     with_ = printed.get("measured_with", {})
     balls = tuple(1e-3 * ball for ball in with_["balls"]) if with_ else None
     table = gear_table(pair, tuple(with_["teeth_spanned"]) if with_ else None, balls)
-    known = {
+    computed = {
         "pair": in_drawing_units(table) | of_pair(pair, table),
         "pinion": in_drawing_units(table.pinion) | of_gear(pair, table, 0),
         "gear": in_drawing_units(table.gear) | of_gear(pair, table, 1),
     }
-    for section, values in known.items():
+    for section, values in computed.items():
         for quantity, text in printed.get(section, {}).items():
             assert_printed(values[quantity], text, f"{name}, {section}.{quantity}")
 
@@ -120,14 +121,16 @@ def test_teeth_with_allowances_measure_as_printed(name):
     alpha = nominal.basic_rack.pressure_angle
     for made in printed["made"]:
         thinnings = [-1e-3 * allowance * math.cos(alpha) for allowance in made["thickness"]]
-        for which in (0, 1):
-            tooth = as_made(nominal.wheels[which].tooth, thinnings[which])
-            where = f"{name}, gear {which + 1} with {made['thickness'][which]} mm"
-            assert_printed(1e3 * span(tooth, with_["teeth_spanned"][which]), made["spans"][which], where)
-            ball = 1e-3 * with_["balls"][which]
-            assert_printed(1e3 * over_balls(tooth, ball), made["over_balls"][which], where)
+        for gear_index in (0, 1):
+            tooth = as_made(nominal.wheels[gear_index].tooth, thinnings[gear_index])
+            where = f"{name}, gear {gear_index + 1} with {made['thickness'][gear_index]} mm"
+            assert_printed(
+                1e3 * span(tooth, with_["teeth_spanned"][gear_index]), made["spans"][gear_index], where
+            )
+            ball = 1e-3 * with_["balls"][gear_index]
+            assert_printed(1e3 * over_balls(tooth, ball), made["over_balls"][gear_index], where)
             arc = (0.5 * math.pi + 2.0 * tooth.profile_shift * math.tan(alpha)) * tooth.module
-            assert_printed(1e3 * arc, made["tooth_thickness"][which], where)
+            assert_printed(1e3 * arc, made["tooth_thickness"][gear_index], where)
         # The same teeth at the end of the tolerance of the centre distance.
         shifts = {
             f"{gear}.profile_shift": s
@@ -162,9 +165,9 @@ def test_shifts_follow_from_spans():
 
 
 def test_backlash_of_gears_made_with_other_shifts():
-    given = TABLES["stplus_51_52"]
-    pair = loaded(given["inputs"])
-    generated = given["generated"]
+    table = TABLES["stplus_51_52"]
+    pair = loaded(table["inputs"])
+    generated = table["generated"]
     pinion, gear = (
         replace(wheel, tooth=replace(wheel.tooth, profile_shift=shift))
         for wheel, shift in zip(pair.wheels, generated["shifts"], strict=True)
@@ -172,7 +175,7 @@ def test_backlash_of_gears_made_with_other_shifts():
     normal = theoretical_backlash(pinion, gear, pair.geometry.operating_pressure_angle)
     assert_printed(1e3 * normal, generated["normal_backlash"], "j_n")
     # The same by thinning the teeth of the nominal shifts.
-    as_thinned = gear_table(loaded(given["inputs"], **{"mesh.backlash": 1e3 * normal}))
+    as_thinned = gear_table(loaded(table["inputs"], **{"mesh.backlash": 1e3 * normal}))
     assert as_thinned.normal_backlash == pytest.approx(normal, abs=1e-15)
     assert_printed(1e3 * as_thinned.circumferential_backlash, generated["circumferential_backlash"], "j_t")
 

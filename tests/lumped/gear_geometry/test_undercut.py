@@ -40,11 +40,11 @@ def test_a_stock_pair_15_40_by_hand():
     """
     r = 7.5
     base = 7.5 * math.cos(ANGLE)
-    off = math.pi / 4 - 0.87 * math.tan(ANGLE) - 0.38 / math.cos(ANGLE)
+    centre_offset = math.pi / 4 - 0.87 * math.tan(ANGLE) - 0.38 / math.cos(ANGLE)
 
     def apart(unknown):
         roll, length = unknown
-        along = off - r * roll
+        along = centre_offset - r * roll
         down = 0.87
         stretch = 1.0 + 0.38 / math.hypot(along, down)
         x, y = along * stretch, r - down * stretch
@@ -73,10 +73,10 @@ def test_a_stock_pair_15_40_by_hand():
 
 def test_the_driven_gear_may_be_the_undercut_one():
     g = stock("15/40").geometry
-    turned = stock("40/15").geometry
-    assert pytest.approx(turned.L_XY - g.L_XA, rel=1e-12) == turned.L_XD
-    assert turned.contact_ratio == pytest.approx(g.contact_ratio, rel=1e-12)
-    assert "at its end" in turned.notes[0]
+    swapped_geometry = stock("40/15").geometry
+    assert pytest.approx(swapped_geometry.L_XY - g.L_XA, rel=1e-12) == swapped_geometry.L_XD
+    assert swapped_geometry.contact_ratio == pytest.approx(g.contact_ratio, rel=1e-12)
+    assert "at its end" in swapped_geometry.notes[0]
 
 
 def test_17_teeth_are_the_limit_of_undercut_and_14_that_of_usual_tolerance():
@@ -251,7 +251,8 @@ def outline(tooth, tip):
 
 def gap_of_outlines(pair, xi):
     """Way of the flanks along the line of action until both outlines touch, the pair at xi [m]."""
-    g, (pinion, gear) = pair.geometry, pair.wheels
+    g = pair.geometry
+    pinion, gear = pair.wheels
     pinion_outline = outline(pinion.tooth, pinion.tip_radius)
     gear_outline = outline(gear.tooth, gear.tip_radius)
     inverse = math.tan(g.operating_pressure_angle) - g.operating_pressure_angle
@@ -300,7 +301,7 @@ def test_a_tip_relief_ends_at_the_tip_and_a_flank_at_the_edge():
     assert at_a < 8.2e-6
     assert pair.flank(1).tip == pytest.approx(tip, rel=1e-12)
     assert pair.flank(0).start == g.undercut_pinion
-    assert reliefs(relieved, circles(relieved))[0][2] == pytest.approx(tip / g.base_radius_gear, rel=1e-12)
+    assert reliefs(relieved, circles(relieved))[0].end == pytest.approx(tip / g.base_radius_gear, rel=1e-12)
 
 
 @pytest.mark.parametrize("teeth", ["15/40", "40/15", "12/60"])
@@ -356,7 +357,8 @@ def test_loaded_contact_reaches_beyond_the_edge(teeth):
 def test_both_models_run_an_undercut_pair_alike():
     """The linear forms to the tolerance of the integration, the exact one by the first law."""
     pair = stock("12/60", mesh__stiffness={"model": "energy"})
-    one, other = lumped.simulate(pair, cycles=3), multibody.simulate(pair, cycles=3, fidelity="linear")
+    one = lumped.simulate(pair, cycles=3)
+    other = multibody.simulate(pair, cycles=3, fidelity="linear")
     swing = float(np.ptp(one.dte.to_numpy()))
     assert np.abs(one.dte.to_numpy() - other.dte.to_numpy()).max() < 1e-7 * swing
     balance = multibody.power_balance(pair, cycles=3)
@@ -395,7 +397,8 @@ def test_friction_beyond_the_edge_is_that_at_the_edge(law):
     assert low < 0.0 < g.L_XA
     mu = MeshCycle.of(pair).elements.friction(np.array([low, 0.0, 0.9 * g.L_XA, g.L_XA]))
     assert mu == pytest.approx(np.full(4, mu[-1]), rel=1e-9)
-    one, other = lumped.simulate(pair, cycles=2), multibody.simulate(pair, cycles=2, fidelity="linear")
+    one = lumped.simulate(pair, cycles=2)
+    other = multibody.simulate(pair, cycles=2, fidelity="linear")
     friction = one.friction_force.to_numpy()
     assert np.isfinite(friction).all()
     assert np.abs(friction - other.friction_force.to_numpy()).max() < 1e-5 * np.abs(friction).max()

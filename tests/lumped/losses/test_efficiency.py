@@ -41,9 +41,11 @@ def efficiency_of_constant_friction(pair, mu):
     r = g.base_radius_pinion
     pitch = g.base_pitch
     double = 0.5 * pitch / (r + 0.5 * mu * pitch) * (g.L_XB - g.L_XA)
-    y_b, y_p = r - mu * g.L_XB, r - mu * g.L_XP
+    y_b = r - mu * g.L_XB
+    y_p = r - mu * g.L_XP
     approach = ((y_b - y_p) - y_p * np.log(y_b / y_p)) / mu**2
-    y_p, y_c = r + mu * g.L_XP, r + mu * g.L_XC
+    y_p = r + mu * g.L_XP
+    y_c = r + mu * g.L_XC
     recess = ((y_c - y_p) - y_p * np.log(y_c / y_p)) / mu**2
     lost = mu * (1 + g.omega_gear / g.omega_pinion) * (double + approach + recess) / pitch
     return 1 - lost
@@ -74,10 +76,12 @@ def test_slow_dynamic_solution_is_quasi_static(name):
     differences = []
     for mu in (0.02, 0.01):
         pair = coulomb(name, mu, operating__pinion_speed=25)
-        found = steady_state(pair, samples_per_cycle=8).attrs
+        attributes = steady_state(pair, samples_per_cycle=8).attrs
         g = geometry(pair)
         # The torques balance sliding alone: dampers are no losses of quasi-statics.
-        dynamic = 1 - found["brake_torque"] * g.omega_gear / (found["pinion_torque"] * g.omega_pinion)
+        dynamic = 1 - attributes["brake_torque"] * g.omega_gear / (
+            attributes["pinion_torque"] * g.omega_pinion
+        )
         static = quasi_static_losses(pair).mesh_efficiency
         differences.append(dynamic / (1 - static) - 1)
     assert abs(differences[0]) < 0.05 * 0.02
@@ -129,8 +133,8 @@ def brute_force(pair, relative=lambda xi: 1.0):
 
     marks = sorted({(x - g.L_XA) % g.base_pitch for x in (g.L_XP, g.L_XD)})
     edges = [0.0, *marks, g.base_pitch]
-    whole = sum(quad(integrand, a, b, epsrel=1e-12)[0] for a, b in itertools.pairwise(edges))
-    return whole / g.base_pitch / (g.omega_pinion * g.base_radius_pinion)
+    integral = sum(quad(integrand, a, b, epsrel=1e-12)[0] for a, b in itertools.pairwise(edges))
+    return integral / g.base_pitch / (g.omega_pinion * g.base_radius_pinion)
 
 
 def test_loss_factor_is_its_definition_also_above_a_contact_ratio_of_two(published):

@@ -66,8 +66,8 @@ def test_viscosity_index_of_the_standards_examples(viscosity_40, viscosity_100, 
 def test_pieces_of_the_reference_oils_join():
     # a wrong digit in the table shows as a gap; each piece is within 0.1 per cent of the tabulated oils
     for joint in (3.8, 4.4, 5.0, 6.4, 7.0, 7.7, 9.0, 12.0, 15.0, 18.0, 22.0, 28.0, 40.0, 55.0, 70.0):
-        for left, right in zip(reference_oils(joint), reference_oils(joint * (1 + 1e-12)), strict=True):
-            assert left == pytest.approx(right, rel=2e-3)
+        for below, above in zip(reference_oils(joint), reference_oils(joint * (1 + 1e-12)), strict=True):
+            assert below == pytest.approx(above, rel=2e-3)
 
 
 @pytest.mark.parametrize("viscosity", [10.0, 46.0, 100.0, 320.0, 3200.0])
@@ -80,8 +80,8 @@ def test_grades_are_a_preferred_number_series():
     # ISO 3448: each mid-point about 50 per cent above the one before
     grades = list(ISO_VG_MIDPOINT)
     assert (len(grades), grades[0], grades[-1]) == (20, 2, 3200)
-    for grade, following in itertools.pairwise(grades):
-        assert 1.4 <= ISO_VG_MIDPOINT[following] / ISO_VG_MIDPOINT[grade] <= 1.55
+    for grade, next_grade in itertools.pairwise(grades):
+        assert 1.4 <= ISO_VG_MIDPOINT[next_grade] / ISO_VG_MIDPOINT[grade] <= 1.55
 
 
 def test_what_does_not_exist_is_refused():

@@ -67,14 +67,15 @@ class Mesh:
         force=3000.0, softening=0.0, linear_below=3.0, converged=EXACT, full_damper=200.0, coupled=False,
         apart_below=0.0, prescribed=False, radius_pinion=0.040, radius_gear=0.075, rolling_speed=6.0,
     )  # fmt: skip
-    ENDS = (0.0080, 0.0235, 0.0420, 0.0, 0.0, 0.0, 0.0)  # FLANKS [m]
+    LENGTH = 0.0420  # [m] of the line between the base circles
+    ENDS = (0.0080, 0.0235, LENGTH, 0.0, 0.0, 0.0, 0.0)  # FLANKS [m]
 
     def __init__(self, position, coupling=None, **numbers):
         position = np.atleast_1d(np.asarray(position, dtype=float))
         self.law = self.LAW._replace(**{name: numbers[name] for name in self.LAW._fields if name in numbers})
         self.line = np.zeros(1, LINE)
         self.pairs = np.zeros(position.size, PAIR)
-        self.line["length"] = self.ENDS[2]
+        self.line["length"] = self.LENGTH
         self.pairs["stiffness"] = 3e8
         for name in LINE.names:
             self.line[name] = numbers.get(name, self.line[name])

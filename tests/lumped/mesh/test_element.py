@@ -60,16 +60,16 @@ def test_a_pair_moves_its_neighbour_as_this_one_moves_it():
     h = 1e-9
     matrix = np.empty((3, 3))
     for j in range(3):
-        moved = []
+        loads = []
         for sign in (1.0, -1.0):
             mesh = coupled()
             mesh.pairs["gap"][j] -= sign * h
-            moved.append(mesh.loads(approach))
-        matrix[:, j] = (moved[0] - moved[1]) / (2.0 * h)
+            loads.append(mesh.loads(approach))
+        matrix[:, j] = (loads[0] - loads[1]) / (2.0 * h)
     mesh = coupled()
     mesh.loads(approach)
-    off = np.abs(matrix - np.diag(np.diag(matrix))).max()
-    assert matrix == pytest.approx(matrix.T, abs=1e-6 * off)  # differences: h over 1e-5, squared
+    coupling = np.abs(matrix - np.diag(np.diag(matrix))).max()
+    assert matrix == pytest.approx(matrix.T, abs=1e-6 * coupling)  # differences: h over 1e-5, squared
     assert matrix.sum(axis=1) == pytest.approx(mesh.contacts["tangent"], rel=1e-6)
 
 
@@ -84,28 +84,29 @@ def test_corner_gap_is_the_distance_of_two_involutes(beyond, radii):
     mate = np.array([length, flank + tip])
     # The mate's flank crosses the line corner + beyond from its tangent point; its corner has turned on.
     turn = beyond / tip
-    away = np.array([-corner, -tip])
-    turned = np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]]) @ away
-    at = mate + turned
+    corner_arm = np.array([-corner, -tip])
+    turned_arm = np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]]) @ corner_arm
+    corner_point = mate + turned_arm
 
     def point(string, crossing):
         """Of the flank that crosses the line at ``crossing``: the end of a string of another length."""
         angle = (crossing - string) / flank  # by which the string's tangent point is ahead of the line
-        n, t = np.cos(angle), np.sin(angle)
+        n = np.cos(angle)
+        t = np.sin(angle)
         return np.array([flank * t + string * n, flank * n - string * t])
 
     crossing = length - corner - beyond
     near = minimize_scalar(
-        lambda string: np.hypot(*(point(string, crossing) - at)),
+        lambda string: np.hypot(*(point(string, crossing) - corner_point)),
         bounds=(0.5 * crossing, 2.0 * crossing), method="bounded", options={"xatol": 1e-14},
     )  # fmt: skip
-    found = corner_at(beyond, corner, length, flank, tip)
-    assert found.gap == pytest.approx(near.fun, rel=1e-6, abs=1e-12)
+    contact = corner_at(beyond, corner, length, flank, tip)
+    assert contact.gap == pytest.approx(near.fun, rel=1e-6, abs=1e-12)
     # The normal of the flank is the string, which pushes the corner away from the mate's centre.
-    assert found.tilt == pytest.approx(np.sin((near.x - crossing) / flank), rel=1e-5)
+    assert contact.tilt == pytest.approx(np.sin((near.x - crossing) / flank), rel=1e-5)
     h = 1e-7
     ends = [corner_at(beyond + s, corner, length, flank, tip).gap for s in (h, -h)]
-    assert found.slope == pytest.approx((ends[0] - ends[1]) / (2.0 * h), rel=1e-5)
+    assert contact.slope == pytest.approx((ends[0] - ends[1]) / (2.0 * h), rel=1e-5)
 
 
 def test_deflected_teeth_touch_further_outside_by_half_of_what_approach_and_bearings_add():
@@ -140,7 +141,8 @@ def test_forces_do_no_work_when_both_gears_move_as_one(unlike):
 
     The moment of the force of a tip corner is path work, which the lumped model leaves out.
     """
-    s, g = structure(unlike), unlike.geometry
+    s = structure(unlike)
+    g = unlike.geometry
     turn = [1.0, -1.0, 0.0, g.base_radius_pinion + g.base_radius_gear, 0.0, -g.L_XY]
     rigid = np.array([[0.0, 0.0, 1.0, 1.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0, 1.0, 1.0], turn])
     small = 1e-12 * g.L_XY
@@ -166,8 +168,8 @@ class TestDampers:
         clipped = 0
 
         def rates(x):
-            found = mesh.force(*x)
-            return np.array([x[1], (force - found.normal) / mass]), found.damper_power
+            forces = mesh.force(*x)
+            return np.array([x[1], (force - forces.normal) / mass]), forces.damper_power
 
         def stored(x):
             return 0.5 * mass * x[1] ** 2 + 0.5 * k * max(x[0], 0.0) ** 2 - force * x[0]
@@ -192,11 +194,13 @@ class TestDampers:
     def test_they_begin_and_become_full_smoothly(self):
         mesh = Mesh([0.015], stiffness=1e8, damping=5e3, full_damper=200.0)
         load = np.array([1e-3, 50.0, 100.0, 200.0 - 1e-3, 300.0])
-        share = [(mesh.force(n / 1e8, 0.1).normal - n) / (5e3 * 0.1) for n in load]
-        assert share[0] == pytest.approx(0.0, abs=1e-9)
-        assert share[2] == pytest.approx(0.5, rel=1e-9)  # the smooth step is odd about its middle
-        assert share[1] == pytest.approx(3.0 / 16.0 - 2.0 / 64.0, rel=1e-9)
-        assert share[3:] == pytest.approx([1.0, 1.0], abs=1e-9)
+        at_zero, at_quarter, at_half, near_full, beyond = (
+            (mesh.force(n / 1e8, 0.1).normal - n) / (5e3 * 0.1) for n in load
+        )
+        assert at_zero == pytest.approx(0.0, abs=1e-9)
+        assert at_half == pytest.approx(0.5, rel=1e-9)  # the smooth step is odd about its middle
+        assert at_quarter == pytest.approx(3.0 / 16.0 - 2.0 / 64.0, rel=1e-9)
+        assert [near_full, beyond] == pytest.approx([1.0, 1.0], abs=1e-9)
 
     def test_they_act_on_the_rate_of_the_compression(self):
         """p' = d(delta - gap)/dt by differences of the gap, with approach and contact both moving."""
@@ -212,20 +216,20 @@ class TestDampers:
         rate = approach_rate - (gaps[0] - gaps[1]) / (2.0 * h)
         mesh = coupled(damping=[3e3, 5e3, 2e3], rolling_speed=rolling)
         elastic = mesh.loads(approach)
-        found = mesh.force(approach, approach_rate)
+        forces = mesh.force(approach, approach_rate)
         assert mesh.normal - elastic == pytest.approx(mesh.pairs["damping"] * rate, rel=1e-5)
-        assert found.damper_power == pytest.approx(mesh.pairs["damping"] @ rate**2, rel=1e-5)
+        assert forces.damper_power == pytest.approx(mesh.pairs["damping"] @ rate**2, rel=1e-5)
         assert np.abs(rate / approach_rate - 1.0).max() > 0.04
 
 
 def test_friction_is_mu_times_each_load_at_its_own_arm():
     mu = np.array([-0.05, 0.02, 0.07])
     mesh = coupled(mu=mu, damping=4e3)
-    found = mesh.force(1.5e-5, 0.2)
-    assert found.normal == pytest.approx(mesh.normal.sum())
-    assert found.friction_force == pytest.approx(mu @ mesh.normal)
-    assert found.friction_moment == pytest.approx((mu * WITH_CORNERS) @ mesh.normal)
-    assert found.separating == pytest.approx(mesh.contacts["tilt"] @ mesh.normal)
+    forces = mesh.force(1.5e-5, 0.2)
+    assert forces.normal == pytest.approx(mesh.normal.sum())
+    assert forces.friction_force == pytest.approx(mu @ mesh.normal)
+    assert forces.friction_moment == pytest.approx((mu * WITH_CORNERS) @ mesh.normal)
+    assert forces.separating == pytest.approx(mesh.contacts["tilt"] @ mesh.normal)
     assert mesh.contacts["tilt"][[0, 2]].min() > 0.0  # both corners push the gears apart
     assert mesh.contacts["tilt"][1] == 0.0
 
@@ -281,9 +285,9 @@ class TestLinearForm:
         forces, state, _ = mesh.linear()
         ends = []
         for sign in (1.0, -1.0):
-            moved = coupled(friction=[-0.05, 0.02, 0.07])
-            moved.pairs["gap"] -= sign * h
-            ends.append(moved.force(state["approach"], 0.0))
+            compressed = coupled(friction=[-0.05, 0.02, 0.07])
+            compressed.pairs["gap"] -= sign * h
+            ends.append(compressed.force(state["approach"], 0.0))
         for name in forces.dtype.names:
             slope = (getattr(ends[0], name) - getattr(ends[1], name)) / (2.0 * h)
             assert forces[name][BY_APPROACH] == pytest.approx(slope, rel=1e-6), name

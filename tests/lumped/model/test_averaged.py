@@ -35,10 +35,10 @@ def closed_form(pair):
 
 
 def test_natural_frequencies_of_the_symmetric_pair(symmetric):
-    found = np.array([m.natural_frequency for m in modes(symmetric)])
+    frequencies = np.array([m.natural_frequency for m in modes(symmetric)])
     # Bearing damping of 5 % leaves |eigenvalue| of a decoupled mode unchanged; the two coupled ones shift by
     # the order of zeta^2 = 0.0025.
-    np.testing.assert_allclose(found, closed_form(symmetric), rtol=2.5e-3)
+    np.testing.assert_allclose(frequencies, closed_form(symmetric), rtol=2.5e-3)
     undamped = symmetric.with_(
         {f"bearings.{g}.{d}_damping_ratio": 0.0 for g in ("pinion", "gear") for d in ("loa", "oloa")}
     )
@@ -98,21 +98,21 @@ def test_the_resonance_speed_is_that_of_the_reduced_mass_on_the_mean_stiffness()
     bodies = lumped.bodies(PAIR)
     natural = math.sqrt(mean_of(PAIR) / bodies.effective_mass)  # rad/s
     speed = natural / PAIR.pinion.teeth
-    found = iso_dynamic_factor(PAIR.with_({"operating.pinion_speed": f"{speed!r} rad/s"}))
-    assert found.resonance_ratio == pytest.approx(1.0, rel=1e-9)
-    assert found.zone == "main resonance"
+    dynamic_factor = iso_dynamic_factor(PAIR.with_({"operating.pinion_speed": f"{speed!r} rad/s"}))
+    assert dynamic_factor.resonance_ratio == pytest.approx(1.0, rel=1e-9)
+    assert dynamic_factor.zone == "main resonance"
 
 
 def test_it_is_one_at_rest_and_continuous_between_the_zones():
-    def at(ratio: float):
+    def factor_at(ratio: float):
         base = iso_dynamic_factor(PAIR).resonance_ratio
         speed = PAIR.operating.pinion_speed * ratio / base
         return iso_dynamic_factor(PAIR.with_({"operating.pinion_speed": f"{speed!r} rad/s"}))
 
-    assert at(1e-4).factor == pytest.approx(1.0, abs=1e-3)
-    assert at(1.15 + 1e-9).factor == pytest.approx(at(1.15 - 1e-9).factor, rel=1e-6)
-    assert at(1.5 + 1e-9).factor == pytest.approx(at(1.5 - 1e-9).factor, rel=1e-6)
-    assert [at(n).zone for n in (0.5, 1.0, 1.3, 2.0)] == [
+    assert factor_at(1e-4).factor == pytest.approx(1.0, abs=1e-3)
+    assert factor_at(1.15 + 1e-9).factor == pytest.approx(factor_at(1.15 - 1e-9).factor, rel=1e-6)
+    assert factor_at(1.5 + 1e-9).factor == pytest.approx(factor_at(1.5 - 1e-9).factor, rel=1e-6)
+    assert [factor_at(n).zone for n in (0.5, 1.0, 1.3, 2.0)] == [
         "subcritical",
         "main resonance",
         "intermediate",

@@ -20,10 +20,10 @@ def by_hand(pair):
     single = pair_single_stiffness(pair)  # tests/lumped/stiffness/test_call_sites
     inertia = []
     for hand in (pinion, gear):
-        own = getattr(pair, hand.gear)
+        wheel = getattr(pair, hand.gear)
         radius = 1e-3 * hand.r
-        mass = own.density * math.pi * (radius**2 - 0.25 * own.bore**2) * own.face_width
-        inertia.append(0.5 * mass * (radius**2 + 0.25 * own.bore**2) / (1e-3 * hand.r_b) ** 2)
+        mass = wheel.density * math.pi * (radius**2 - 0.25 * wheel.bore**2) * wheel.face_width
+        inertia.append(0.5 * mass * (radius**2 + 0.25 * wheel.bore**2) / (1e-3 * hand.r_b) ** 2)
     reduced = inertia[0] * inertia[1] / sum(inertia) / width  # kg/mm
     resonance = 30000.0 / (math.pi * pinion.z) * math.sqrt(single * (0.75 * ratio + 0.25) / reduced)
     n = pair.operating.pinion_speed * 30.0 / math.pi / resonance
@@ -41,9 +41,12 @@ def test_below_the_resonance():
     n, b_p, b_f, load = by_hand(pair)
     assert load >= 100.0
     assert n <= 0.85
-    found = iso_dynamic_factor(pair)
-    assert (found.zone, found.resonance_ratio) == ("subcritical", pytest.approx(n, rel=1e-9))
-    assert found.factor == pytest.approx(n * (0.32 * b_p + 0.34 * b_f + 0.23) + 1.0, rel=1e-9)
+    dynamic_factor = iso_dynamic_factor(pair)
+    assert (dynamic_factor.zone, dynamic_factor.resonance_ratio) == (
+        "subcritical",
+        pytest.approx(n, rel=1e-9),
+    )
+    assert dynamic_factor.factor == pytest.approx(n * (0.32 * b_p + 0.34 * b_f + 0.23) + 1.0, rel=1e-9)
 
 
 def test_at_the_resonance_the_larger_gear_may_drive():
@@ -51,9 +54,12 @@ def test_at_the_resonance_the_larger_gear_may_drive():
     slow = unlike_pair("larger_gear_drives_contact_lost")
     n, b_p, b_f, _ = by_hand(slow)
     pair = slow.with_(speed=slow.operating.pinion_speed.to("rpm") / n)
-    found = iso_dynamic_factor(pair)
-    assert (found.zone, found.resonance_ratio) == ("main resonance", pytest.approx(1.0, rel=1e-9))
-    assert found.factor == pytest.approx(0.32 * b_p + 0.34 * b_f + 0.90 + 1.0, rel=1e-9)
+    dynamic_factor = iso_dynamic_factor(pair)
+    assert (dynamic_factor.zone, dynamic_factor.resonance_ratio) == (
+        "main resonance",
+        pytest.approx(1.0, rel=1e-9),
+    )
+    assert dynamic_factor.factor == pytest.approx(0.32 * b_p + 0.34 * b_f + 0.90 + 1.0, rel=1e-9)
 
 
 def test_a_factor_on_the_model_s_stiffness_changes_no_number_of_the_standard():

@@ -71,9 +71,11 @@ def test_reduced_forms_are_exact(case, form, printed):
     reduced = periodic_system(case.pair, form, cycle=case.cycle, as_printed=printed)
     rows = np.kron(np.eye(2), reduced.reduction)
     for t in random_times(case.cycle, 12):
-        left, right = rows @ full.A(t), reduced.A(t) @ rows
-        np.testing.assert_allclose(left, right, atol=ROUNDING * np.abs(left).max(), rtol=0)
-        a, b = rows @ full.b(t, 55.0), reduced.b(t, 55.0)
+        product = rows @ full.A(t)
+        reduced_product = reduced.A(t) @ rows
+        np.testing.assert_allclose(product, reduced_product, atol=ROUNDING * np.abs(product).max(), rtol=0)
+        a = rows @ full.b(t, 55.0)
+        b = reduced.b(t, 55.0)
         np.testing.assert_allclose(a, b, rtol=ROUNDING, atol=ROUNDING * np.abs(a).max())
     np.testing.assert_allclose(reduced.deflection @ reduced.reduction, full.deflection, atol=1e-15)
 
@@ -81,7 +83,8 @@ def test_reduced_forms_are_exact(case, form, printed):
 def test_rigid_rotation_is_a_jordan_chain(case):
     """Turning both gears together does nothing, turning them steadily only turns them: A v = 0, A w = v."""
     g = case.g
-    v, w = np.zeros(12), np.zeros(12)
+    v = np.zeros(12)
+    w = np.zeros(12)
     v[:2] = w[6:8] = 1 / g.base_radius_pinion, 1 / g.base_radius_gear
     for t in random_times(case.cycle, 20):
         a = case.system.A(t)
@@ -94,7 +97,8 @@ def test_static_deflection_is_an_equilibrium(published):
     """Without friction and with the mean stiffness for all times, every acceleration vanishes."""
     g = geometry(published)
     system = periodic_system(published, "full")
-    k, s = system.cycle.mean_stiffness, system.structure
+    k = system.cycle.mean_stiffness
+    s = system.structure
     state = static_deflection(system)
     load = k * (s.deflection @ state[:6])
     torque = published.operating.pinion_torque

@@ -9,6 +9,7 @@ import pytest
 
 import lumped
 from lumped.model.cycle_maps import CycleSteps, linear_steps, stepped_motion
+from lumped.model.period_closure import BRAKE_TORQUE, MORE_PINION_TORQUE
 from lumped.model.periodic_system import LTVSystem
 from lumped.model.powers import mean_powers
 from lumped.model.steady import periodic_solution, sample_times
@@ -47,35 +48,36 @@ def test_without_deviation_every_quantity_is_that_of_like_teeth(name, contact, s
     pair = pair_of(name, contact)
     options = {"samples_per_cycle": SAMPLES, "supports": supports}
     like = lumped.steady_state(pair, **options)
-    own = lumped.steady_state(with_deviation(pair, 0.0), **options)
+    zero_deviation = lumped.steady_state(with_deviation(pair, 0.0), **options)
     swing = like.attrs["dte_peak_to_peak"]
     force = pair.operating.pinion_torque / pair.geometry.base_radius_pinion
 
-    def moved(variable):
-        found = own[variable].values.reshape(-1, SAMPLES)
-        return np.abs(found - like[variable].values).max()
+    def largest_change(variable):
+        cycles = zero_deviation[variable].values.reshape(-1, SAMPLES)
+        return np.abs(cycles - like[variable].values).max()
 
     for variable in ("dte", "x_p", "x_g", "y_p", "y_g"):
-        assert moved(variable) < 1e-10 * swing, variable
+        assert largest_change(variable) < 1e-10 * swing, variable
         peak = f"{variable}_peak_to_peak"
-        assert own.attrs[peak] == pytest.approx(like.attrs[peak], abs=1e-10 * swing)
+        assert zero_deviation.attrs[peak] == pytest.approx(like.attrs[peak], abs=1e-10 * swing)
     for variable, arm in (
         ("theta_p", pair.geometry.base_radius_pinion),
         ("theta_g", pair.geometry.base_radius_gear),
     ):
-        assert moved(variable) * arm < 1e-9 * swing, variable  # both grow with the angle that friction swings
-    loads = (one["normal_load"].sum("pair").values for one in (own, like))
+        # Both grow with the angle that friction swings.
+        assert largest_change(variable) * arm < 1e-9 * swing, variable
+    loads = (one["normal_load"].sum("pair").values for one in (zero_deviation, like))
     own_load, like_load = loads
     assert own_load.reshape(-1, SAMPLES) == pytest.approx(
         np.tile(like_load, (own_load.size // SAMPLES, 1)), abs=1e-9 * force
     )
     driving = like.attrs["pinion_torque"] * pair.geometry.omega_pinion
     powers = [key for key in like.attrs if key.startswith("power_")]
-    assert set(powers) == {key for key in own.attrs if key.startswith("power_")}
+    assert set(powers) == {key for key in zero_deviation.attrs if key.startswith("power_")}
     for key in powers:
-        assert own.attrs[key] == pytest.approx(like.attrs[key], abs=1e-10 * driving, rel=1e-9), key
+        assert zero_deviation.attrs[key] == pytest.approx(like.attrs[key], abs=1e-10 * driving, rel=1e-9), key
     for key in ("mesh_efficiency", "brake_torque", "pinion_torque"):
-        assert own.attrs[key] == pytest.approx(like.attrs[key], rel=1e-10), key
+        assert zero_deviation.attrs[key] == pytest.approx(like.attrs[key], rel=1e-10), key
 
 
 @pytest.mark.parametrize("first_order", ["steps", "eccentricity"])
@@ -88,28 +90,28 @@ def test_a_femtometre_moves_no_result_by_a_millionth(name, contact, supports, fi
     """
     pair = pair_of(name, contact)
     index = [1e-9] + [0.0] * (pair.pinion.teeth - 1)
-    given = pair.with_({"pinion.deviations": {"index": index, "first_order": first_order}})
+    deviated_pair = pair.with_({"pinion.deviations": {"index": index, "first_order": first_order}})
     for touch in ("linear", "unilateral"):
         options = {"contact": touch, "samples_per_cycle": SAMPLES, "supports": supports}
         like = lumped.steady_state(pair, **options)
-        own = lumped.steady_state(given, **options)
-        cycles = own.sizes["time"] // like.sizes["time"]
+        deviated = lumped.steady_state(deviated_pair, **options)
+        cycles = deviated.sizes["time"] // like.sizes["time"]
         for variable, values in like.data_vars.items():
             expected = np.concatenate([values.values] * cycles, axis=-1)
             close = 1e-6 * max(np.ptp(expected), 1e-12 * np.abs(expected).max())
-            assert own[variable].values == pytest.approx(expected, abs=close), (touch, variable)
+            assert deviated[variable].values == pytest.approx(expected, abs=close), (touch, variable)
         for key, value in like.attrs.items():
             # Errors of the methods are their own, and the energy that is left may be rounding.
             if isinstance(value, float) and key not in ("error_estimate", "closure", "power_energy_residual"):
-                assert own.attrs[key] == pytest.approx(value, rel=2e-6), (touch, key)
+                assert deviated.attrs[key] == pytest.approx(value, rel=2e-6), (touch, key)
 
 
 def test_a_picometre_moves_everything_by_about_a_picometre():
     pair = pair_of("nasa_28_28", "loaded")
-    own, like = (
+    deviated, like = (
         lumped.steady_state(with_deviation(pair, error), samples_per_cycle=SAMPLES) for error in (1e-6, 0.0)
     )
-    assert 1e-13 < np.abs(own.dte.values - like.dte.values).max() < 5e-12
+    assert 1e-13 < np.abs(deviated.dte.values - like.dte.values).max() < 5e-12
 
 
 @pytest.mark.parametrize("name", UNLIKE)
@@ -137,8 +139,8 @@ def test_first_law_of_the_steps_holds_to_rounding_with_eccentric_gears(name, con
     pair = unlike_pair(name).healthy.with_(changes)
     system = LTVSystem.of(pair.healthy, "full", supports="springs")
     g = pair.geometry
-    found = stepped_motion(CycleSteps(pair, system, 1, linear_steps(system)))
-    torque = system.pinion_torque + found.weights[1]
-    brake = found.weights[2]
-    lost = sum(found.powers.values()) - 2.0 * found.powers["rolling"]
+    motion = stepped_motion(CycleSteps(pair, system, 1, linear_steps(system)))
+    torque = system.pinion_torque + motion.weights[MORE_PINION_TORQUE]
+    brake = motion.weights[BRAKE_TORQUE]
+    lost = sum(motion.powers.values()) - 2.0 * motion.powers["rolling"]
     assert torque * g.omega_pinion - brake * g.omega_gear == pytest.approx(lost, rel=1e-9)

@@ -37,15 +37,16 @@ def test_the_pitch_point_is_a_switch_also_without_friction(published):
 def test_ends_of_a_segment_are_its_one_sided_limits(cycle):
     for segment, (low, high) in enumerate(zip(cycle.edges[:-1], cycle.edges[1:], strict=True)):
         nudge = max(1e-9 * (high - low), 1e-10 * cycle.period)  # nearer would count as at the switch
-        at = cycle.sample([low, high], segment)
+        segment_ends = cycle.sample([low, high], segment)
         near = cycle.sample([low + nudge, high - nudge])
         for name in ("stiffness", "damping", "friction"):
-            a, b = getattr(at, name), getattr(near, name)
+            a = getattr(segment_ends, name)
+            b = getattr(near, name)
             # The slope of the law over that way: law II is steep beside its bound at the pitch point.
             law = getattr(cycle.elements, name)
             g = cycle.geometry
-            way = g.base_radius_pinion * g.omega_pinion * nudge
-            change = np.where(near.contact, np.abs(law.slope(near.position)) * way, 0.0)
+            travel = g.base_radius_pinion * g.omega_pinion * nudge
+            change = np.where(near.contact, np.abs(law.slope(near.position)) * travel, 0.0)
             assert (np.abs(a - b) <= 1.1 * change + 1e-9 * np.abs(a).max()).all(), name
 
 
@@ -62,11 +63,13 @@ class TestManyCycles:
         times = cycle.switch_times
         for j in range(times.size):
             after = cycle.sample(times[j : j + 1], j + 1)
-            at = cycle.sample(times[j] + np.arange(60) * cycle.period)
+            switch_sample = cycle.sample(times[j] + np.arange(60) * cycle.period)
             for name in ("stiffness", "damping", "friction", "contact"):
-                found, expected = (np.asarray(getattr(s, name), dtype=float) for s in (at, after))
+                quantity, expected = (
+                    np.asarray(getattr(s, name), dtype=float) for s in (switch_sample, after)
+                )
                 # A law has no slope that would show over the rounding of 60 periods, 1e-14 of one.
-                assert np.abs(found - expected).max() <= 1e-9 * np.abs(expected).max(), name
+                assert np.abs(quantity - expected).max() <= 1e-9 * np.abs(expected).max(), name
 
 
 def at_contact_ratio(nasa, ratio):
@@ -82,22 +85,24 @@ def at_contact_ratio(nasa, ratio):
     return slim.with_(pinion__tip_diameter=tip, gear__tip_diameter=tip)
 
 
-@pytest.mark.parametrize("off", [0.0, 1e-15, -1e-15, 1e-12, -1e-12, 1e-10, -1e-10, 1e-8, -1e-8, 1e-5, -1e-5])
-def test_an_integer_contact_ratio_is_no_special_place(nasa, off):
-    cycle = mesh_cycle(at_contact_ratio(nasa, 2.0 + off))
-    assert cycle.geometry.contact_ratio == pytest.approx(2.0 + off, abs=1e-13)
+@pytest.mark.parametrize(
+    "excess", [0.0, 1e-15, -1e-15, 1e-12, -1e-12, 1e-10, -1e-10, 1e-8, -1e-8, 1e-5, -1e-5]
+)
+def test_an_integer_contact_ratio_is_no_special_place(nasa, excess):
+    cycle = mesh_cycle(at_contact_ratio(nasa, 2.0 + excess))
+    assert cycle.geometry.contact_ratio == pytest.approx(2.0 + excess, abs=1e-13)
     middles = 0.5 * (cycle.edges[1:] + cycle.edges[:-1])
     count = cycle.sample(middles).contact.sum(axis=0)
     mean = (count * np.diff(cycle.edges)).sum() / cycle.period
     # Switches closer than 1e-10 of a cycle count as one, at most two of them; so do those beside its ends.
     assert np.diff(cycle.edges).min() > 0.99e-10 * cycle.period  # 1 % for rounding
-    assert mean == pytest.approx(2.0 + off, abs=3e-10)
+    assert mean == pytest.approx(2.0 + excess, abs=3e-10)
     assert np.all(np.isfinite(cycle.sample(np.linspace(0, cycle.period, 101)).stiffness))
 
 
-@pytest.mark.parametrize("off", [1e-12, 1e-6])
-def test_the_least_contact_ratio(nasa, off):
-    cycle = mesh_cycle(at_contact_ratio(nasa, 1.0 + off))
+@pytest.mark.parametrize("excess", [1e-12, 1e-6])
+def test_the_least_contact_ratio(nasa, excess):
+    cycle = mesh_cycle(at_contact_ratio(nasa, 1.0 + excess))
     times = np.linspace(0, cycle.period, 1001)
     assert cycle.sample(times).contact.any(axis=0).all()
 
@@ -109,12 +114,14 @@ def test_no_more_than_rounding_counts_as_at_a_switch(cycle, cycles):
     segments = np.arange(cycle.edges.size - 2)
     jumps = []
     for time, segment in ((places * (1.0 - 2e-12), segments), (places + cycles * cycle.period, segments + 1)):
-        found = cycle.sample(time)
+        sample = cycle.sample(time)
         expected = cycle.sample(places, segment=segment)
         for name in ("stiffness", "damping", "friction", "error"):
-            of = getattr(found, name)
-            at = getattr(expected, name)
+            sampled = getattr(sample, name)
+            exact = getattr(expected, name)
             # A law has no slope that would show over the rounding of 1e5 periods, 1e-11 of one.
-            np.testing.assert_allclose(of, at, rtol=0.0, atol=1e-6 * np.abs(at).max(), err_msg=name)
+            np.testing.assert_allclose(
+                sampled, exact, rtol=0.0, atol=1e-6 * np.abs(exact).max(), err_msg=name
+            )
         jumps.append(expected.stiffness)
     assert (np.abs(jumps[1] - jumps[0]).max(axis=0) > 1e-3 * np.abs(jumps[0]).max()).any()

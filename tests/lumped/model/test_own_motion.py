@@ -13,6 +13,7 @@ from lumped.mesh.places import fill_linear_form, kinks, linear_form_at, static_l
 from lumped.mesh.records import FORCE, LINE
 from lumped.mesh.tables import TURNING
 from lumped.model.cycle_maps import linear_motion
+from lumped.model.equations import Y_P
 from lumped.model.tooth_laws import ToothLaws, mesh_tables
 from lumped.model.unilateral_motion import settled_motion
 from lumped.schema.bodies import bodies_of
@@ -41,7 +42,7 @@ def dte(loaded):
     """Function: DTE over the period of lists on pinion and gear [um], in a form of contact."""
 
     @functools.cache
-    def of(form, pinion=None, gear=None, torque=56.5):
+    def transmission_error(form, pinion=None, gear=None, torque=56.5):
         contact, touch = form.split()
         changes = {"mesh.contact": contact, "operating.pinion_torque": torque}
         for name, values in (("pinion", pinion), ("gear", gear)):
@@ -50,7 +51,7 @@ def dte(loaded):
         run = MOTION[touch](loaded.with_(changes), SAMPLES, steps=160)
         return run.states[:, :6] @ run.system.structure.deflection * 1e6
 
-    return of
+    return transmission_error
 
 
 FORMS = ["prescribed linear", "prescribed unilateral", "loaded unilateral", "loaded linear"]
@@ -61,9 +62,9 @@ NONE = (0.0,) * 28
 @pytest.mark.parametrize("form", FORMS)
 class TestEveryForm:
     def test_equal_lists_on_like_gears_cancel(self, dte, form):
-        found = dte(form, LIST, LIST)
-        assert found == pytest.approx(dte(form, NONE), abs=1e-10)
-        orders = np.abs(np.fft.rfft(found)) / found.size
+        error = dte(form, LIST, LIST)
+        assert error == pytest.approx(dte(form, NONE), abs=1e-10)
+        orders = np.abs(np.fft.rfft(error)) / error.size
         orders[::28] = 0.0
         assert orders.max() < 1e-9  # um
 
@@ -90,33 +91,42 @@ class TestFixedContacts:
         # Errors so small that no pair pulls: both integrate the same equations.
         tips = {f"{g}.{one}": None for g in ("pinion", "gear") for one in ("tip_relief", "tip_diameter")}
         lists = {"pinion": 0.1 * ERRORS[:21], "gear": 0.07 * ERRORS[::-1] + 0.2}
-        own = {f"{g}.deviations": {**steps(e), "profile_slope": list(e[::-1])} for g, e in lists.items()}
-        changes = {"pinion.teeth": 21, "centre_distance": None, "mesh.contact": "prescribed", **tips, **own}
+        deviations = {
+            f"{g}.deviations": {**steps(e), "profile_slope": list(e[::-1])} for g, e in lists.items()
+        }
+        changes = {
+            "pinion.teeth": 21,
+            "centre_distance": None,
+            "mesh.contact": "prescribed",
+            **tips,
+            **deviations,
+        }
         changes |= {"mesh.first_teeth": [3, 9], "pinion.faults": faults}
         changes |= {"pinion.mounting": {"eccentricity": 1, "phase": 30}}
         pair = loaded.with_(changes)
-        one, other = linear_motion(pair, SAMPLES, steps=192), settled_motion(pair, SAMPLES, steps=4096)
+        one = linear_motion(pair, SAMPLES, steps=192)
+        other = settled_motion(pair, SAMPLES, steps=4096)
         assert other.load[other.load != 0.0].min() > 100.0
         scale = np.abs(other.states[:, 2:6]).max(axis=0)
         assert one.states[:, 2:6] / scale == pytest.approx(other.states[:, 2:6] / scale, abs=1e-8)
         assert one.brake_torque == pytest.approx(other.brake_torque, rel=1e-9)
 
     def test_errors_of_zero_mean_leave_mesh_harmonics_and_own_gaps_do_not(self, dte):
-        def moved(form):
+        def change_of_harmonics(form):
             one, healthy = (np.abs(np.fft.rfft(dte(form, values))[28:85:28]) for values in (LIST, NONE))
             return np.abs(one / healthy - 1.0).max()
 
-        assert moved(self.FORM) < 1e-10
-        assert moved("loaded unilateral") > 0.01
+        assert change_of_harmonics(self.FORM) < 1e-10
+        assert change_of_harmonics("loaded unilateral") > 0.01
 
     def test_torque_and_errors_times_two_double_the_motion_unless_corners_touch(self, dte):
-        def off(form):
+        def nonlinearity(form):
             single = dte(form, LIST)
             return np.abs(dte(form, tuple(2.0 * ERRORS), None, 113.0) - 2.0 * single).max() / np.ptp(single)
 
-        assert off(self.FORM) < 1e-9
-        assert off("prescribed unilateral") < 1e-9
-        assert off("loaded unilateral") > 0.1
+        assert nonlinearity(self.FORM) < 1e-9
+        assert nonlinearity("prescribed unilateral") < 1e-9
+        assert nonlinearity("loaded unilateral") > 0.1
 
 
 def test_like_teeth_move_as_the_loaded_form_says(loaded, dte):
@@ -126,10 +136,10 @@ def test_like_teeth_move_as_the_loaded_form_says(loaded, dte):
     assert np.tile(expected, 28) == pytest.approx(dte("loaded linear", NONE), abs=0.02 * np.ptp(expected))
     pair = loaded.with_({"pinion.deviations": steps(NONE)})
     fine = linear_motion(pair, SAMPLES, steps=640)
-    found = fine.states[:SAMPLES, :6] @ fine.system.structure.deflection * 1e6
-    assert found == pytest.approx(expected, abs=2e-3 * np.ptp(expected))
+    transmission_error = fine.states[:SAMPLES, :6] @ fine.system.structure.deflection * 1e6
+    assert transmission_error == pytest.approx(expected, abs=2e-3 * np.ptp(expected))
     swing = np.ptp(twin.y_p.values)  # of corners too, which push off the line of action
-    assert fine.states[:SAMPLES, 4] == pytest.approx(twin.y_p.values, abs=2e-3 * swing)
+    assert fine.states[:SAMPLES, Y_P] == pytest.approx(twin.y_p.values, abs=2e-3 * swing)
     assert fine.brake_torque - fine.powers["rolling"] / pair.geometry.omega_gear == pytest.approx(
         lumped.steady_state(loaded).attrs["brake_torque"], rel=1e-6
     )
@@ -157,10 +167,10 @@ def test_first_law_holds_over_the_period_with_the_moment_of_eccentric_gears(name
     pair = unlike_pair(name).with_(OWN[name])
     pushed = lumped.steady_state(pair, contact="unilateral", samples_per_cycle=8)
     g = pair.geometry
-    found = pushed.attrs
+    attributes = pushed.attrs
     driving = pair.operating.pinion_torque * g.omega_pinion
-    braking = found["brake_torque"] * g.omega_gear
-    lost = found["power_sliding"] + found["power_tooth_dampers"] + found["power_bearings"]
+    braking = attributes["brake_torque"] * g.omega_gear
+    lost = attributes["power_sliding"] + attributes["power_tooth_dampers"] + attributes["power_bearings"]
     # Steps of the default length leave 2e-5 of the loss where tips jump in and out under heavy relief.
     assert driving - braking == pytest.approx(lost, rel=1e-4)
 
@@ -185,11 +195,11 @@ def test_power_without_friction_goes_into_dampers_and_bearings(eccentric):
     pair = unlike_pair("larger_gear_drives_contact_lost").with_(
         {"friction.law": "none", "operating.pinion_speed": 900, **mounted}
     )
-    found = lumped.steady_state(pair, samples_per_cycle=8).attrs
+    attributes = lumped.steady_state(pair, samples_per_cycle=8).attrs
     g = pair.geometry
     driving = pair.operating.pinion_torque * g.omega_pinion
-    braking = found["brake_torque"] * g.omega_gear
-    lost = found["power_tooth_dampers"] + found["power_bearings"]
+    braking = attributes["brake_torque"] * g.omega_gear
+    lost = attributes["power_tooth_dampers"] + attributes["power_bearings"]
     # Steps leave 2e-3 of the losses where pairs touch inside them.
     assert driving - braking == pytest.approx(lost, rel=0.01)
 
@@ -203,7 +213,7 @@ def test_a_transient_settles_to_the_periodic_motion_and_stays_on_it(name):
     steady = lumped.steady_state(pair, contact="unilateral", samples_per_cycle=8)
     size = np.ptp(steady.dte.values)
     force = pair.operating.pinion_torque / pair.geometry.base_radius_pinion
-    for initial, left in (("periodic", 0), ("static", 100)):
+    for initial, skipped_cycles in (("periodic", 0), ("static", 100)):
         run = lumped.simulate(pair, cycles, contact="unilateral", samples_per_cycle=8, initial=initial)
         assert (run.sizes["time"], run.attrs["teeth"]) == (cycles * 8 + 1, "as given")
         tooth = (
@@ -211,8 +221,8 @@ def test_a_transient_settles_to_the_periodic_motion_and_stays_on_it(name):
         )  # the other one has no such period
         for variable, close in (("dte", 1e-5 * size), ("normal_load", 1e-6 * force), (tooth, 0.5)):
             expected = np.take(steady[variable].values, np.arange(cycles * 8 + 1) % (period * 8), axis=-1)
-            off = np.abs(run[variable].values - expected)[..., left * 8 :]
-            assert off.max() < close, (initial, variable)
+            error = np.abs(run[variable].values - expected)[..., skipped_cycles * 8 :]
+            assert error.max() < close, (initial, variable)
 
 
 class TestEccentricGears:
@@ -226,27 +236,27 @@ class TestEccentricGears:
         def line(u):
             """Length of the line of action [m] and its angle [rad]; u along and off it."""
             along = g.L_XY - u[0]
-            off = radius - u[1]
-            length = np.sqrt(along**2 + off**2 - radius**2)
-            return length, np.arctan2(off, along) - np.arctan2(radius, length)
+            across = radius - u[1]
+            length = np.sqrt(along**2 + across**2 - radius**2)
+            return length, np.arctan2(across, along) - np.arctan2(radius, length)
 
-        for which, u in enumerate(
+        for gear_index, u in enumerate(
             (eps * np.array([-np.cos(turn), np.sin(turn)]), -eps * np.array([np.cos(turn), np.sin(turn)]))
         ):
             turning = np.zeros(2, TURNING)
             turning["cycles"] = 25, 31
-            turning["amplitude"][which] = eps
-            turning["start"][which] = turn - 0.5
-            own = mesh_tables(ToothLaws(unequal), 1.0, 1)
-            own.turned[0, 0, which] = np.cos(0.5), np.sin(0.5)
-            own = own._replace(turning=turning, lengthening=0.0)
-            moved = np.zeros(1, LINE)
+            turning["amplitude"][gear_index] = eps
+            turning["start"][gear_index] = turn - 0.5
+            tables = mesh_tables(ToothLaws(unequal), 1.0, 1)
+            tables.turned[0, 0, gear_index] = np.cos(0.5), np.sin(0.5)
+            tables = tables._replace(turning=turning, lengthening=0.0)
+            moved_line = np.zeros(1, LINE)
             starts = np.zeros((2, 2))
-            starts[which] = eps * np.cos(turn - 0.5), eps * np.sin(turn - 0.5)
-            gap, _ = line_at(0, 0, own, starts, moved)
+            starts[gear_index] = eps * np.cos(turn - 0.5), eps * np.sin(turn - 0.5)
+            gap, _ = line_at(0, 0, tables, starts, moved_line)
             length, angle = line(u)
-            assert moved["length"][0] - g.L_XY == pytest.approx(length - g.L_XY, rel=1e-5)
-            assert moved["turn"][0] == pytest.approx(angle, rel=1e-5)
+            assert moved_line["length"][0] - g.L_XY == pytest.approx(length - g.L_XY, rel=1e-5)
+            assert moved_line["turn"][0] == pytest.approx(angle, rel=1e-5)
             assert gap == pytest.approx(length - g.L_XY - radius * angle, rel=1e-5)
 
     def test_an_eccentric_gear_makes_small_sidebands_where_a_list_of_steps_makes_large_ones(self, loaded):
@@ -264,14 +274,14 @@ class TestEccentricGears:
         assert side["steps"] > 5.0 * side["turning"]
 
 
-def inside(pair, found):
+def inside(pair, loads):
     """Gap of each pair at each output, whether it carries away from the tips, and k of a rectangular pair."""
     g = pair.geometry
-    teeth = (found.pinion_tooth.values - 1, found.gear_tooth.values - 1)
-    phase = found.phase.values if "phase" in found.coords else found.time.values / g.mesh_period
-    ahead = found.sizes["pair"] - 2 - np.arange(found.sizes["pair"])  # the last one is behind A
+    teeth = (loads.pinion_tooth.values - 1, loads.gear_tooth.values - 1)
+    phase = loads.phase.values if "phase" in loads.coords else loads.time.values / g.mesh_period
+    ahead = loads.sizes["pair"] - 2 - np.arange(loads.sizes["pair"])  # the last one is behind A
     position = g.L_XA + ((phase + 1e-12) % 1.0 + ahead[:, None]) * g.base_pitch
-    inner = (position > g.L_XA + 1.5e-4) & (position < g.L_XD - 1.5e-4) & (found.normal_load.values > 0.0)
+    inner = (position > g.L_XA + 1.5e-4) & (position < g.L_XD - 1.5e-4) & (loads.normal_load.values > 0.0)
     k = float(lumped.mesh_stiffness(pair).attrs["mean"]) / g.contact_ratio
     return lumped.tooth_gaps(pair).gap.values[teeth], inner, k
 
@@ -281,18 +291,18 @@ class TestOfEveryPair:
         pair = loaded.with_(
             {"pinion.deviations": steps(3.0 * ERRORS), "gear.deviations": steps(ERRORS[::-1])}
         )
-        found = lumped.static_sharing(pair, samples_per_cycle=16)
+        sharing = lumped.static_sharing(pair, samples_per_cycle=16)
         force = 56.5 / pair.geometry.base_radius_pinion
-        assert found.normal_load.sum("pair").values == pytest.approx(force, rel=1e-9)
+        assert sharing.normal_load.sum("pair").values == pytest.approx(force, rel=1e-9)
         # Away from the tips a pair is a rectangle of stiffness: where two press, both give the same approach.
-        gap, inner, k = inside(pair, found)
-        own = found.normal_load.values / k + gap
-        approach = np.broadcast_to(found.transmission_error.values, own.shape)
+        gap, inner, k = inside(pair, sharing)
+        pair_approach = sharing.normal_load.values / k + gap
+        approach = np.broadcast_to(sharing.transmission_error.values, pair_approach.shape)
         assert inner.sum() > 300
-        assert own[inner] == pytest.approx(approach[inner], rel=1e-9)
-        largest = found.largest_load.values
+        assert pair_approach[inner] == pytest.approx(approach[inner], rel=1e-9)
+        largest = sharing.largest_load.values
         assert np.isfinite(largest).sum() == 28
-        assert np.nanmax(largest) >= found.normal_load.values.max()
+        assert np.nanmax(largest) >= sharing.normal_load.values.max()
 
     def test_dampers_begin_together_with_the_elastic_load(self, loaded):
         pair = loaded.with_({"pinion.deviations": steps(3.0 * ERRORS), "operating.pinion_speed": 4000})
@@ -309,38 +319,38 @@ class TestOfEveryPair:
         slopes = {"profile_slope": [8.0] * 28, "first_order": "steps"}
         mounted = {"eccentricity": 20, "phase": 50}
         pair = loaded.with_({"pinion.deviations": slopes, "pinion.mounting": mounted})
-        way = 3.0
-        own = mesh_tables(ToothLaws(pair), 1.0 / 32, 1)
-        own.turning["swing"][0] = way
-        moved, loads = static_loads(own, 0, 28)
-        own.turning["swing"][0] = 0.0
-        unmoved, others = static_loads(own, 0, 28)
+        swing = 3.0
+        tables = mesh_tables(ToothLaws(pair), 1.0 / 32, 1)
+        tables.turning["swing"][0] = swing
+        approach, loads = static_loads(tables, 0, 28)
+        tables.turning["swing"][0] = 0.0
+        unmoved, others = static_loads(tables, 0, 28)
         single = (loads["static"] + others["static"] > 0.0).sum(axis=-1) == 1
-        turn = 2.0 * np.pi / 28 * (np.arange(28)[:, None] + own.edges[:-1]) + np.radians(50.0)
+        turn = 2.0 * np.pi / 28 * (np.arange(28)[:, None] + tables.edges[:-1]) + np.radians(50.0)
         flank = pair.flank(0)
-        expected = -8e-6 / (flank.tip - flank.start) * way * 20e-6 * np.sin(turn)
+        expected = -8e-6 / (flank.tip - flank.start) * swing * 20e-6 * np.sin(turn)
         assert single.sum() > 150
-        assert (moved - unmoved)[single] == pytest.approx(expected[single], abs=1e-12)
+        assert (approach - unmoved)[single] == pytest.approx(expected[single], abs=1e-12)
 
     def test_sums_of_a_step_with_kinks_have_the_moments_of_what_is_there(self, loaded):
         laws = ToothLaws(loaded.with_({"pinion.deviations": steps(ERRORS)}))
-        own = mesh_tables(laws, 1.0 / 16, 1, gauss_tableau(4).c)
+        tables = mesh_tables(laws, 1.0 / 16, 1, gauss_tableau(4).c)
         x = (np.arange(2000) + 0.5) / 2000
-        shape = (28, *own.position.shape[:2])
+        shape = (28, *tables.position.shape[:2])
         form = LinearForm(np.empty((*shape, 3), FORCE), np.empty(shape, STATE))
-        fill_linear_form(own, 0, form)
-        at = np.arange(28)[:, None, None], np.arange(shape[1])[:, None], x
-        fine, _ = linear_form_at(own, 0, *at)
-        touches = kinks(own, 0, 28, np.linspace(0.0, 1.0, 3), 16)
-        steps_with = np.histogram(touches, np.add.outer(np.arange(28), own.edges[:-1]).ravel())[0]
+        fill_linear_form(tables, 0, form)
+        places = np.arange(28)[:, None, None], np.arange(shape[1])[:, None], x
+        fine, _ = linear_form_at(tables, 0, *places)
+        touches = kinks(tables, 0, 28, np.linspace(0.0, 1.0, 3), 16)
+        steps_with = np.histogram(touches, np.add.outer(np.arange(28), tables.edges[:-1]).ravel())[0]
         assert (steps_with > 1).sum() > 30
-        to_moments = (np.vander(x, 4) @ np.linalg.inv(np.vander(own.nodes)) / x.size).T
+        to_moments = (np.vander(x, 4) @ np.linalg.inv(np.vander(tables.nodes)) / x.size).T
         # Up to 1.5 % of a sum is left where a tip leaves the line of action inside a step.
         for coarse, exact in zip(form, fine, strict=True):
             for name in coarse.dtype.names:
-                found = coarse[name].reshape(*shape, -1)
+                interpolated = coarse[name].reshape(*shape, -1)
                 wanted = to_moments @ exact[name].reshape(*shape[:2], x.size, -1)
-                wrong = np.abs(own.weights[:, None] * found - wanted).max(axis=(0, 1, 2))
+                wrong = np.abs(tables.weights[:, None] * interpolated - wanted).max(axis=(0, 1, 2))
                 assert (wrong <= 0.02 * np.abs(wanted).max(axis=(0, 1, 2))).all(), name
 
 
@@ -348,14 +358,16 @@ class TestOfEveryPair:
 def test_ripple_of_the_torque_is_carried_to_the_other_shaft(loaded, form):
     # Far below every resonance the load follows the torque: N = (T + A cos)/r_b of order 5 of the pinion,
     # less what turns both inertias; J_g/(J_p + J_g) = 1/2 of it passes like gears.
-    ripple = [{"shaft": "pinion", "order": 5, "amplitude": 2.0, "phase": 90}]
-    (contact, touch), still = form.split(), {"friction.coefficient": 0.0}
+    order = 5
+    ripple = [{"shaft": "pinion", "order": order, "amplitude": 2.0, "phase": 90}]
+    contact, touch = form.split()
+    still = {"friction.coefficient": 0.0}
     pair = loaded.with_({"operating.torque_ripple": ripple, "mesh.contact": contact, **still})
     with pytest.raises(lumped.ParameterError, match="Add the inertia of motor"):  # swings by centimetres
         lumped.steady_state(pair.with_(operating__pinion_speed=200), contact=touch)
     run = lumped.steady_state(pair, samples_per_cycle=512, contact=touch)
     load = run.normal_load.sum("pair").values
-    first = 2.0 * np.fft.rfft(load)[5] / load.size * pair.geometry.base_radius_pinion
+    first = 2.0 * np.fft.rfft(load)[order] / load.size * pair.geometry.base_radius_pinion
     near = 5e-3 if contact == "loaded" else 0.1  # in fixed windows the load rings after each change
     assert abs(first) == pytest.approx(1.0, rel=near)
     assert np.angle(first) == pytest.approx(np.pi / 2.0, abs=near)

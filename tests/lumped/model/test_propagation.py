@@ -112,8 +112,8 @@ class TestSteps:
         system = periodic_system(published, "full")
         outputs = np.linspace(0.0, system.period, 37, endpoint=False)
         edges = step_maps(system, np.zeros((12, 0)), outputs=outputs).edges
-        off = np.abs(edges[:, None] - outputs).min(axis=0)
-        assert off.max() < 1e-12 * system.period
+        distance = np.abs(edges[:, None] - outputs).min(axis=0)
+        assert distance.max() < 1e-12 * system.period
         assert set(system.cycle.edges) <= set(edges)  # bit for bit: a step must not straddle a switch
         assert np.all(np.diff(edges) > 0)
         pieces = np.diff(system.cycle.breaks)
@@ -123,10 +123,10 @@ class TestSteps:
         assert passed.any()
         assert np.all(np.minimum(pieces[:-1], pieces[1:])[passed] >= 0.5 * step[passed])
 
-    @pytest.mark.parametrize("off", [-1e-14, -1e-15, 1e-15, 1e-14])
-    def test_outputs_beside_a_switch_do_not_move_it(self, published, off):
+    @pytest.mark.parametrize("offset", [-1e-14, -1e-15, 1e-15, 1e-14])
+    def test_outputs_beside_a_switch_do_not_move_it(self, published, offset):
         system = periodic_system(published, "full")
-        outputs = system.cycle.switch_times + off * system.period
+        outputs = system.cycle.switch_times + offset * system.period
         edges = step_maps(system, np.zeros((12, 0)), outputs=outputs).edges
         assert set(system.cycle.edges) <= set(edges)
         # No step as short as a rounding is left between the two.

@@ -20,8 +20,10 @@ PAIR = load_gear_pair("nasa_28_28").with_(
 
 def test_without_a_ramp_it_is_the_motion_at_that_speed():
     run = run_up(PAIR, (3000, 3000), 0.02)
-    known = simulate(PAIR.with_(speed=3000), 20, samples_per_cycle=32, initial="periodic")
-    assert np.abs(run["dte"][:640] - known["dte"].values[:640]).max() < 1e-9 * np.ptp(known["dte"].values)
+    constant_speed = simulate(PAIR.with_(speed=3000), 20, samples_per_cycle=32, initial="periodic")
+    assert np.abs(run["dte"][:640] - constant_speed["dte"].values[:640]).max() < 1e-9 * np.ptp(
+        constant_speed["dte"].values
+    )
 
 
 def difference(seconds: float) -> float:
@@ -34,9 +36,9 @@ def difference(seconds: float) -> float:
     inner = 6
     phase = np.arange(2 * inner * (count - 1) + 1) / (2 * inner * 32)  # two places a step, 6 steps an output
     duration = 1.0 / np.sqrt(first**2 + 2 * first / seconds * phase)
-    at = phase % 1.0 * system.period
-    a = system.matrices(at) * duration[:, None, None]
-    b = (system.forcing(at) + brake * system.torque_gear) * duration[:, None]
+    time = phase % 1.0 * system.period
+    a = system.matrices(time) * duration[:, None, None]
+    b = (system.forcing(time) + brake * system.torque_gear) * duration[:, None]
     state = np.array([float(run[name][0]) for name in system.state_names])
     states = [state]
     h = 1.0 / (inner * 32)
@@ -60,10 +62,10 @@ def test_coefficients_that_stay_for_a_cycle_err_by_the_speed_of_the_ramp():
 
 def test_a_slow_ramp_is_the_sweep_and_the_mesh_order_carries_it():
     run = run_up(PAIR, (3000, 3300), 2.0, samples_per_cycle=16)
-    found = spurcheck.waterfall(run)
-    speeds = found["speed_rpm"].to_numpy()[[5, -5]]
+    waterfall = spurcheck.waterfall(run)
+    speeds = waterfall["speed_rpm"].to_numpy()[[5, -5]]
     sweep = speed_sweep(PAIR, speeds)
-    mesh_orders = found["amplitude"].sel(order=[1, 2, 3, 4, 5, 6, 7], method="nearest")
+    mesh_orders = waterfall["amplitude"].sel(order=[1, 2, 3, 4, 5, 6, 7], method="nearest")
     rms = np.sqrt((mesh_orders**2).sum("order") / 2).to_numpy()[[5, -5]]  # Parseval
     assert rms == pytest.approx(sweep["dte_rms"].to_numpy(), rel=2e-3)
 

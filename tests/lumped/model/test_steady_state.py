@@ -15,6 +15,7 @@ from lumped import (
     steady_state,
 )
 from lumped.labelling import parameters_hash
+from lumped.model.equations import Y_P
 from lumped.model.period_closure import balanced_start
 from lumped.model.propagation import step_maps
 from lumped.model.results import VARIABLES, cycle_peak_to_peak, peak_to_peak
@@ -65,25 +66,26 @@ def with_brake(unequal):
 
 
 def test_the_drive_balances_a_given_brake(with_brake, unequal):
-    free, given = with_brake
-    assert given.attrs["brake_torque"] == 40.0
+    free, braked = with_brake
+    assert braked.attrs["brake_torque"] == 40.0
     # The balance is linear in the load: same ratio of the torques, other size.
     ratio = free.attrs["pinion_torque"] / free.attrs["brake_torque"]
-    assert given.attrs["pinion_torque"] == pytest.approx(40.0 * ratio, rel=1e-10)
+    assert braked.attrs["pinion_torque"] == pytest.approx(40.0 * ratio, rel=1e-10)
     # Dampers lose by the square of the load, sliding by the load itself: the efficiency is another one.
-    lost = {name: one.attrs[name] for one in (given,) for name in one.attrs if name.startswith("power_")}
-    power = given.attrs["pinion_torque"] * geometry(unequal).omega_pinion
+    lost = {name: one.attrs[name] for one in (braked,) for name in one.attrs if name.startswith("power_")}
+    power = braked.attrs["pinion_torque"] * geometry(unequal).omega_pinion
     places = ("power_sliding", "power_tooth_dampers", "power_bearings")
-    assert given.attrs["mesh_efficiency"] == pytest.approx(
+    assert braked.attrs["mesh_efficiency"] == pytest.approx(
         1.0 - sum(lost[n] for n in places) / power, rel=1e-12
     )
 
 
 def test_the_motion_scales_with_the_torque(with_brake):
-    free, given = with_brake
-    factor = given.attrs["pinion_torque"] / free.attrs["pinion_torque"]
+    free, braked = with_brake
+    factor = braked.attrs["pinion_torque"] / free.attrs["pinion_torque"]
     for name in MOTION:
-        a, b = given[name].to_numpy(), factor * free[name].to_numpy()
+        a = braked[name].to_numpy()
+        b = factor * free[name].to_numpy()
         assert np.abs(a - b).max() < 1e-9 * np.abs(b).max(), name
 
 
@@ -122,7 +124,7 @@ def test_a_stability_boundary_is_refused(published):
         }
     )
     # y is a plain oscillator: its multiplier is at +1 where a whole number of periods fits the mesh cycle.
-    mass = periodic_system(stiff, "full").structure.mass[4]
+    mass = periodic_system(stiff, "full").structure.mass[Y_P]
     stiffness = published.bearings.pinion.oloa_stiffness
     teeth = published.pinion.teeth
     speed = math.sqrt(stiffness / mass) * 60 / (2 * math.pi * teeth) / 3
@@ -143,12 +145,12 @@ def test_an_unstable_periodic_motion_says_so(high_contact):
     assert radii[worst] > 1.01
     assert radii.min() < 1.0
     for place in (worst, int(np.argmin(radii))):
-        at = pair.with_(operating__pinion_speed=float(speeds[place]))
-        motion = steady_state(at, samples_per_cycle=8)
+        unstable = pair.with_(operating__pinion_speed=float(speeds[place]))
+        motion = steady_state(unstable, samples_per_cycle=8)
         assert motion.attrs["spectral_radius"] == radii[place]
         start = np.array([float(motion[n][0]) for n in list(motion)[:12]])
         start[2:4] += 1e-6, -1e-6
-        run = simulate(at, 200, samples_per_cycle=8, initial=start)
+        run = simulate(unstable, 200, samples_per_cycle=8, initial=start)
         rest = run["x_p"].to_numpy()[:-1].reshape(200, 8) - motion["x_p"].to_numpy()
         size = np.abs(rest).max(axis=1)
         if place == worst:
@@ -198,17 +200,19 @@ def test_provenance(run, unequal):
 
 
 def test_same_parameters_same_bits(published):
-    a, b = steady_state(published, samples_per_cycle=32), steady_state(published, samples_per_cycle=32)
+    a = steady_state(published, samples_per_cycle=32)
+    b = steady_state(published, samples_per_cycle=32)
     assert a.identical(b)
-    c, d = simulate(published, 1, samples_per_cycle=16), simulate(published, 1, samples_per_cycle=16)
+    c = simulate(published, 1, samples_per_cycle=16)
+    d = simulate(published, 1, samples_per_cycle=16)
     assert c.identical(d)
 
 
 def test_extremes_between_samples_are_found():
     time = np.linspace(0.0, 2.0 * np.pi, 9)  # the extremes of the sine below lie between these
-    found = peak_to_peak(time, np.sin(time + 0.3), np.cos(time + 0.3))
+    swing = peak_to_peak(time, np.sin(time + 0.3), np.cos(time + 0.3))
     # Cubic from exact values and rates: error up to h^4/384 at each extreme, h = pi/4.
-    assert found == pytest.approx(2.0, abs=2 * (np.pi / 4) ** 4 / 384)
+    assert swing == pytest.approx(2.0, abs=2 * (np.pi / 4) ** 4 / 384)
     assert np.ptp(np.sin(time + 0.3)) < 1.92
 
 

@@ -96,17 +96,17 @@ def distance(reference, sweep, name="dte_peak_to_peak"):
 
 
 def test_lines_follow_the_curve_better_than_even_steps(reference):
-    found = resolved_sweep(PAIR, ENDS, most=80, samples_per_cycle=64)
-    speed = found["speed"].to_numpy()
+    resolved = resolved_sweep(PAIR, ENDS, most=80, samples_per_cycle=64)
+    speed = resolved["speed"].to_numpy()
     even = speed_sweep(PAIR, np.linspace(*ENDS, speed.size), samples_per_cycle=64)
-    assert distance(reference, found) < 0.01
-    assert distance(reference, found) < 0.3 * distance(reference, even)
-    assert distance(reference, found, "normal_load_max") < 0.01
+    assert distance(reference, resolved) < 0.01
+    assert distance(reference, resolved) < 0.3 * distance(reference, even)
+    assert distance(reference, resolved, "normal_load_max") < 0.01
 
 
 def test_it_stops_where_nothing_bends_and_takes_a_range_without_the_operating_speed():
-    flat = resolved_sweep(PAIR, (40_000.0, 40_400.0), most=100, samples_per_cycle=64)
-    assert flat.sizes["speed"] < 40
+    sweep = resolved_sweep(PAIR, (40_000.0, 40_400.0), most=100, samples_per_cycle=64)
+    assert sweep.sizes["speed"] < 40
 
 
 def test_two_speeds_are_the_least():

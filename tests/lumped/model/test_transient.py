@@ -33,7 +33,8 @@ def test_every_sample_is_filled_whatever_the_grid(published, samples):
     """Samples of a coarse run are those of a fine one: none is skipped, doubled or shifted at a switch."""
     fine = simulate(published, 2, samples_per_cycle=10 * samples)
     coarse = simulate(published, 2, samples_per_cycle=samples)
-    a, b = states(fine)[::10], states(coarse)
+    a = states(fine)[::10]
+    b = states(coarse)
     assert np.isfinite(b).all()
     # Same solution, other output points: dense output has the accuracy of the steps.
     assert (np.abs(a - b) / np.abs(a).max(axis=0)).max() < 1e-7
@@ -99,7 +100,8 @@ def test_static_start_carries_the_given_brake(published):
     """With a brake torque given, the mean load is the brake's, not the one of the nominal pinion torque."""
     pair = published.with_(operating__brake_torque=20.0, friction__law="none")
     run = simulate(pair, 1, samples_per_cycle=8)
-    g, k = geometry(pair), mesh_cycle(pair).mean_stiffness
+    g = geometry(pair)
+    k = mesh_cycle(pair).mean_stiffness
     assert float(run["dte"][0]) * k == pytest.approx(20.0 / g.base_radius_gear, rel=1e-9)
 
 

@@ -73,9 +73,11 @@ def test_a_quarter_of_the_torque_at_half_the_speed_makes_a_quarter_of_the_motion
 
     Corners are parabolas, to some 60 per metre of length: 0.1 mm here.
     """
-    here, slower, softer = (damper_power(*at)[0] for at in ((1.0, 200.0), (0.25, 100.0), (0.25, 200.0)))
-    assert here / slower == pytest.approx(32.0, rel=5e-3)  # 16 a mesh cycle
-    assert np.log2(here / softer) / 2.0 < 1.4
+    nominal, slower, softer = (
+        damper_power(*operating_point)[0] for operating_point in ((1.0, 200.0), (0.25, 100.0), (0.25, 200.0))
+    )
+    assert nominal / slower == pytest.approx(32.0, rel=5e-3)  # 16 a mesh cycle
+    assert np.log2(nominal / softer) / 2.0 < 1.4
 
 
 def test_the_energy_residual_of_prescribed_contact_has_a_closed_form():
@@ -83,7 +85,8 @@ def test_the_energy_residual_of_prescribed_contact_has_a_closed_form():
     pair = lumped.load_gear_pair("nasa_28_28").with_(
         mesh__contact="prescribed", mesh__relief="ignored", friction={"law": "coulomb", "coefficient": 0.0}
     )
-    g, k = lumped.geometry(pair), float(mesh_elements(pair).stiffness(lumped.geometry(pair).L_XP))
+    g = lumped.geometry(pair)
+    k = float(mesh_elements(pair).stiffness(lumped.geometry(pair).L_XP))
     system = periodic_system(pair, "full")
     times = np.array([0.0, np.mod(g.contact_ratio, 1.0)]) * system.period
     motion = periodic_solution(system, times, estimate_error=False)
@@ -107,8 +110,8 @@ def test_losses_by_place_are_those_of_an_independent_program(rpm, sliding, dampe
             )
         )
     )
-    found = np.array([powers.sliding, powers.tooth_dampers, powers.bearings]) / powers.driving * 100
-    assert found == pytest.approx([sliding, dampers, bearings], abs=1.1e-3)
+    losses = np.array([powers.sliding, powers.tooth_dampers, powers.bearings]) / powers.driving * 100
+    assert losses == pytest.approx([sliding, dampers, bearings], abs=1.1e-3)
 
 
 @pytest.mark.parametrize("name", ["linear", "relief"])
@@ -135,8 +138,8 @@ def test_all_losses_are_paid_by_the_moments_and_the_force_along_the_path(name):
     # The motion swings about the static one: what is stored where a pair comes or goes jumps with all k_t.
     ends = contact.contact[0]
     times = np.sort(np.mod((ends - g.L_XA) / speed, g.mesh_period))
-    at = periodic_solution(periodic_system(pair, "full"), times, estimate_error=False)
-    dte = np.interp(np.mod((ends - g.L_XA) / speed, g.mesh_period), times, at.values["dte"])
+    periodic = periodic_solution(periodic_system(pair, "full"), times, estimate_error=False)
+    dte = np.interp(np.mod((ends - g.L_XA) / speed, g.mesh_period), times, periodic.values["dte"])
 
     def stored(side):
         place = ends + np.arange(-2, 3)[:, None] * g.base_pitch + side * 1e-10
@@ -151,9 +154,9 @@ def test_all_losses_are_paid_by_the_moments_and_the_force_along_the_path(name):
 def test_the_brake_of_unequal_gears_takes_what_no_loss_takes(name):
     pair = FORMS[name]
     powers = mean_powers(solution(FORMS[name]))
-    found = lumped.steady_state(pair, samples_per_cycle=16).attrs
-    taken = found["brake_torque"] * lumped.geometry(pair).omega_gear
-    assert found["power_energy_residual"] == 0.0
+    attributes = lumped.steady_state(pair, samples_per_cycle=16).attrs
+    taken = attributes["brake_torque"] * lumped.geometry(pair).omega_gear
+    assert attributes["power_energy_residual"] == 0.0
     assert taken == pytest.approx(powers.driving - powers.lost, rel=1e-9)
 
 

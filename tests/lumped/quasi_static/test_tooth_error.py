@@ -76,9 +76,10 @@ def test_the_gap_is_the_turn_that_brings_the_corner_onto_the_flank(end, beyond):
         start = g.L_XA
         xi = g.L_XA - distance
     else:
-        r_flank, r_tip, start, xi = (
-            g.base_radius_gear, g.base_radius_pinion, g.L_XY - g.L_XD, g.L_XD + distance,
-        )  # fmt: skip
+        r_flank = g.base_radius_gear
+        r_tip = g.base_radius_pinion
+        start = g.L_XY - g.L_XD
+        xi = g.L_XD + distance
     gap = float(corner_gap(g, np.array([xi]))[0])
     assert gap > 0.0
     # The mate seen from its own tangent point: its corner is the point of its involute at the tip's length.
@@ -86,14 +87,14 @@ def test_the_gap_is_the_turn_that_brings_the_corner_onto_the_flank(end, beyond):
     t, n = flank(r_tip, corner_length + distance, corner_length)
     corner = np.array([g.L_XY - t, -n])
 
-    def nearest(turned):
+    def nearest(turn):
         def distance_to(length):
-            return math.dist(flank(r_flank, start - distance + turned, length), corner)
+            return math.dist(flank(r_flank, start - distance + turn, length), corner)
 
-        found = minimize_scalar(
+        minimum = minimize_scalar(
             distance_to, bounds=(0.1 * start, 2.0 * start), method="bounded", options={"xatol": 1e-12}
         )
-        return found.fun
+        return minimum.fun
 
     # The flank turned forward by gap/r passes through that corner; one turned by 1 % more does not.
     assert nearest(gap) < 1e-4 * gap
@@ -107,10 +108,10 @@ def test_the_reliefs_of_both_gears_over_their_own_roll_angles(name):
     xi = Contact(pair).xi
     expected = np.zeros(xi.size)
     for gear in ("pinion", "gear"):
-        own = getattr(pair, gear).tip_relief
+        relief = getattr(pair, gear).tip_relief
         hand = ByHand(pair, gear)
         length = 1e3 * xi if gear == "pinion" else hand.line - 1e3 * xi
-        start, end = math.degrees(own.start_roll_angle), hand.roll(hand.tip_length)
+        start, end = math.degrees(relief.start_roll_angle), hand.roll(hand.tip_length)
         share = np.maximum((np.degrees(length / hand.r_b) - start) / (end - start), 0.0)
-        expected += own.amount * share ** {"linear": 1, "parabolic": 2}[own.shape]
+        expected += relief.amount * share ** {"linear": 1, "parabolic": 2}[relief.shape]
     np.testing.assert_allclose(relief_error(pair, xi), expected, rtol=1e-9, atol=1e-18)

@@ -80,41 +80,43 @@ def test_ideal_linear_relief_makes_the_error_constant_at_its_torque():
     ideal = {"shape": "linear", "amount": single * 1e6, "start_roll_angle": roll}
     relieved = pair.with_(pinion__tip_relief=ideal, gear__tip_relief=ideal)
     data = static_transmission_error(relieved, [28.25, 56.5, 113.0])
-    assert float(data.peak_to_peak[1]) < 1e-9 * single
+    below, at_its_torque, twice = data.peak_to_peak.values
+    assert at_its_torque < 1e-9 * single
     assert data.transmission_error.values[1] == pytest.approx(single, rel=1e-9)
     # Off its torque it is not: at twice the load single contact gives 2F/k, double (2F + F)/2k.
-    assert float(data.peak_to_peak[2]) == pytest.approx(single / 2, rel=1e-9)
-    assert float(data.peak_to_peak[0]) > 0.1 * single
+    assert twice == pytest.approx(single / 2, rel=1e-9)
+    assert below > 0.1 * single
 
 
 def test_relief_optimum_of_constant_stiffness_is_the_closed_form():
     pair = plain()
     g = geometry(pair)
-    found = optimal_relief(pair, torque=56.5)
+    relief = optimal_relief(pair, torque=56.5)
     # 256 positions see the double contact to 1/256 of a pitch.
-    assert found.amount == pytest.approx(deflection(pair, 56.5), rel=5e-3)
-    assert found.length == pytest.approx((g.contact_ratio - 1) * g.base_pitch, rel=5e-3)
-    assert found.peak_to_peak < 1e-3 * found.unmodified
-    data = static_transmission_error(with_tip_relief(pair, found), [56.5])
-    assert float(data.peak_to_peak[0]) == pytest.approx(found.peak_to_peak, abs=1e-6 * found.unmodified)
+    assert relief.amount == pytest.approx(deflection(pair, 56.5), rel=5e-3)
+    assert relief.length == pytest.approx((g.contact_ratio - 1) * g.base_pitch, rel=5e-3)
+    assert relief.peak_to_peak < 1e-3 * relief.unmodified
+    data = static_transmission_error(with_tip_relief(pair, relief), [56.5])
+    assert float(data.peak_to_peak[0]) == pytest.approx(relief.peak_to_peak, abs=1e-6 * relief.unmodified)
 
 
 def test_relief_optimum_of_real_stiffness():
     pair = plain(model="energy").with_(operating__pinion_torque=56.5)
-    found = optimal_relief(pair)
+    relief = optimal_relief(pair)
     radii = pair.geometry.base_radius_pinion, pair.geometry.base_radius_gear
-    assert found.peak_to_peak < 0.25 * found.unmodified
+    assert relief.peak_to_peak < 0.25 * relief.unmodified
     # A minimum up to the preference for little material, 1e-2 of the amount's change.
     for more, longer in itertools.product((0.9, 1.0, 1.1), (-0.05, 0.0, 0.05)):
         starts = {
-            f"start_roll_angle_{gear}": getattr(found, f"start_roll_angle_{gear}") - longer * found.length / r
+            f"start_roll_angle_{gear}": getattr(relief, f"start_roll_angle_{gear}")
+            - longer * relief.length / r
             for gear, r in zip(("pinion", "gear"), radii, strict=True)
         }
-        other = with_tip_relief(pair, replace(found, amount=more * found.amount, **starts))
+        other = with_tip_relief(pair, replace(relief, amount=more * relief.amount, **starts))
         peak = float(static_transmission_error(other).peak_to_peak[0])
-        assert peak > found.peak_to_peak - 2e-3 * found.amount
+        assert peak > relief.peak_to_peak - 2e-3 * relief.amount
         if more == 1.0 and longer == 0.0:
-            assert peak == pytest.approx(found.peak_to_peak, rel=1e-9)
+            assert peak == pytest.approx(relief.peak_to_peak, rel=1e-9)
 
 
 def test_published_relief_of_the_nasa_rig_suits_its_torque():
@@ -130,8 +132,8 @@ def test_published_relief_of_the_nasa_rig_suits_its_torque():
 
 def test_elements_without_relief_have_the_stiffness_of_the_model():
     pair = plain(model="energy")
-    found = mesh_elements(pair).stiffness.coefficients
-    assert found == pytest.approx(pair_stiffness(pair).coefficients)
+    coefficients = mesh_elements(pair).stiffness.coefficients
+    assert coefficients == pytest.approx(pair_stiffness(pair).coefficients)
 
 
 @pytest.mark.parametrize("share", [0.25, 2.5])
@@ -158,8 +160,8 @@ def test_energy_stiffness_follows_the_torque(name):
     torques = [4.0, 40.0, 160.0]
     data = static_transmission_error(pair, torques, extended=False).transmission_error.values
     for row, torque in zip(data, torques, strict=True):
-        own = pair.with_(operating__pinion_torque=torque)
-        exact = static_transmission_error(own, extended=False).transmission_error.values[0]
+        loaded_pair = pair.with_(operating__pinion_torque=torque)
+        exact = static_transmission_error(loaded_pair, extended=False).transmission_error.values[0]
         assert row == pytest.approx(exact, rel=1e-8)  # two fits of k at 1e-10 of the peak
     # Softer at low load: more than a tenth of the deflection's share would give.
     assert data[0].mean() * 10 > 1.02 * data[1].mean()
@@ -197,7 +199,8 @@ def relieved(**changes):
 
 def test_elements_carry_the_error_and_the_loaded_contact():
     pair = relieved(**{"operating.pinion_torque": 300.0})
-    g, e = geometry(pair), mesh_elements(pair)
+    g = geometry(pair)
+    e = mesh_elements(pair)
     # Amounts of the pair's reliefs at both tips.
     assert float(e.error(g.L_XD)) == pytest.approx(40e-6, rel=1e-9)
     assert float(e.error(g.L_XA)) == pytest.approx(36e-6, rel=1e-9)
@@ -221,14 +224,15 @@ def test_slow_running_is_quasi_static():
 def test_pairs_that_cannot_touch_carry_nothing():
     unloaded = share_load(np.full((2, 2), K), np.array([[1e-6, 3e-6], [4e-6, 2e-6]]), 0.0)
     assert unloaded.transmission_error == pytest.approx([1e-6, 2e-6], rel=1e-14)  # the first contact
-    found = share_load(np.array([1e8, 1e8]), np.array([0.0, np.inf]), np.array([[10.0], [20.0]])[:, 0])
-    assert found.load == pytest.approx(np.array([[10.0, 0.0], [20.0, 0.0]]), rel=1e-14)
+    sharing = share_load(np.array([1e8, 1e8]), np.array([0.0, np.inf]), np.array([[10.0], [20.0]])[:, 0])
+    assert sharing.load == pytest.approx(np.array([[10.0, 0.0], [20.0, 0.0]]), rel=1e-14)
     with pytest.raises(NumericalError, match="no tooth pair"):
         share_load([1e8], [np.inf], 1.0)
 
 
 def test_a_coupling_too_small_to_matter_changes_nothing():
-    k, e = np.array([[1.0, 2.0, 0.5, 0.0]]), np.array([[0.3, 0.0, np.inf, 0.1]])
+    k = np.array([[1.0, 2.0, 0.5, 0.0]])
+    e = np.array([[0.3, 0.0, np.inf, 0.1]])
     alone, nearly = (share_load(k, e, [2.0], w) for w in (None, np.full((1, 4, 4), 1e-300)))
     assert nearly.load == pytest.approx(alone.load, rel=1e-14)
     assert nearly.transmission_error == pytest.approx(alone.transmission_error, rel=1e-14)

@@ -22,6 +22,8 @@ from tests.unlike_pairs import UNLIKE, unlike_pair
 #: Contact and relief of the files are those of a tooth pair: the stiffness of the whole mesh decides anew.
 FREE = {"mesh.contact": None, "mesh.relief": None}
 PHASES = np.arange(64) / 64
+#: The tooth of the pinion that is displaced, counted from 1.
+DISPLACED_TOOTH = 5
 #: Of a gear with a rim: three modules below the root circle are left.
 BORES = {"19/41": (17.0, 70.0), "27/28": (30.0, 30.0)}
 
@@ -47,12 +49,16 @@ def test_static_transmission_error_is_load_over_stiffness(name):
     curve = whole(name, lambda phase: wave(phase))
     for pair, stiffness in ((constant, 2.3e8), (curve, wave(PHASES))):
         torques = pair.operating.pinion_torque * np.array([0.01, 1.0, 3.0])
-        found = static_transmission_error(pair, torques, phases=64)["transmission_error"].to_numpy()
+        transmission_error = static_transmission_error(pair, torques, phases=64)[
+            "transmission_error"
+        ].to_numpy()
         expected = torques[:, None] / pair.geometry.base_radius_pinion / stiffness
         # A curve is sampled at 240 places, of which these phases are not all: (2 pi 2/240)^2/8 of 0.3.
-        assert found == pytest.approx(np.broadcast_to(expected, found.shape), rel=1.5e-4)
+        assert transmission_error == pytest.approx(
+            np.broadcast_to(expected, transmission_error.shape), rel=1.5e-4
+        )
         sharing = lumped.static_sharing(pair, samples_per_cycle=64)["transmission_error"].to_numpy()
-        assert sharing == pytest.approx(found[1], rel=1e-8)
+        assert sharing == pytest.approx(transmission_error[1], rel=1e-8)
     assert (
         np.ptp(static_transmission_error(constant)["transmission_error"].to_numpy())
         < 1e-9 * force(constant) / 2.3e8
@@ -63,8 +69,8 @@ def test_static_transmission_error_is_load_over_stiffness(name):
 def test_a_rim_changes_the_shares_and_not_the_sum(teeth):
     bores = dict(zip(("pinion.bore", "gear.bore"), BORES[teeth], strict=True))
     pair = new_pair(teeth, 2.5, 20.0, 1450.0, 80.0, bores, stiffness=4e8)
-    found = static_transmission_error(pair)["transmission_error"].to_numpy()
-    assert found == pytest.approx(np.full(found.shape, force(pair) / 4e8), rel=1e-8)
+    transmission_error = static_transmission_error(pair)["transmission_error"].to_numpy()
+    assert transmission_error == pytest.approx(np.full(transmission_error.shape, force(pair) / 4e8), rel=1e-8)
 
 
 @pytest.mark.parametrize(
@@ -105,19 +111,18 @@ def test_errors_of_single_teeth_are_in_series_with_the_curve():
     """Where all pairs press, sum k_i (delta - e_i) = F: the errors act by their share of the stiffness."""
     pair = whole("rack_25_degrees_always_pushing", 2.3e8)
     index = [0.0] * pair.pinion.teeth
-    index[4] = 3.0
-    own = pair.with_({"pinion.deviations": {"index": index, "first_order": "steps"}})
-    found, like = (lumped.static_sharing(one, samples_per_cycle=32) for one in (own, pair))
-    load = found["normal_load"].to_numpy()
-    total = force(own)
-    still = force(own) / 2.3e8
+    index[DISPLACED_TOOTH - 1] = 3.0
+    deviated = pair.with_({"pinion.deviations": {"index": index, "first_order": "steps"}})
+    sharing, like = (lumped.static_sharing(one, samples_per_cycle=32) for one in (deviated, pair))
+    load = sharing["normal_load"].to_numpy()
+    total = force(deviated)
+    still = force(deviated) / 2.3e8
     assert load.sum(axis=0) == pytest.approx(np.full(load.shape[1], total), rel=1e-9)
     # The share of a pair is the load without errors over that of the mesh, and repeats with every cycle.
     share = np.tile(like["normal_load"].to_numpy(), load.shape[1] // like.sizes["phase"]) / total
-    late = np.where(
-        found["pinion_tooth"].to_numpy() == 5, 3e-6 * math.cos(pair.basic_rack.pressure_angle), 0.0
-    )
-    change = found["transmission_error"].to_numpy() - still
+    displaced = sharing["pinion_tooth"].to_numpy() == DISPLACED_TOOTH
+    late = np.where(displaced, 3e-6 * math.cos(pair.basic_rack.pressure_angle), 0.0)
+    change = sharing["transmission_error"].to_numpy() - still
     assert change.max() > 2e-6
     assert change == pytest.approx((share * late).sum(axis=0), abs=1e-9)
 
@@ -125,18 +130,18 @@ def test_errors_of_single_teeth_are_in_series_with_the_curve():
 def test_contact_and_relief_follow_the_stiffness():
     pair = load_gear_pair("nasa_28_28")
     assert (pair.mesh.contact, pair.mesh.relief) == ("loaded", "static")
-    given = pair.with_(stiffness=2.5e8)
-    assert (given.mesh.contact, given.mesh.relief) == ("prescribed", "ignored")
-    assert given.state("mesh.contact") is given.state("mesh.relief") is State.ASSUMED
-    again = load_gear_pair(given.to_mapping())
-    assert again == given
+    stiffness_stated = pair.with_(stiffness=2.5e8)
+    assert (stiffness_stated.mesh.contact, stiffness_stated.mesh.relief) == ("prescribed", "ignored")
+    assert stiffness_stated.state("mesh.contact") is stiffness_stated.state("mesh.relief") is State.ASSUMED
+    again = load_gear_pair(stiffness_stated.to_mapping())
+    assert again == stiffness_stated
     assert again.state("mesh.contact") is State.ASSUMED
-    back = given.with_(stiffness="energy")
+    back = stiffness_stated.with_(stiffness="energy")
     assert (back.mesh.contact, back.mesh.relief) == ("loaded", "static")
-    single = given.with_({"mesh.contact": "loaded"}, stiffness=lambda xi: 1e10 * xi)
+    single = stiffness_stated.with_({"mesh.contact": "loaded"}, stiffness=lambda xi: 1e10 * xi)
     assert (single.mesh.contact, single.state("mesh.contact")) == ("loaded", State.KNOWN)
-    known = pair.with_(mesh__contact="prescribed").with_(stiffness="energy")
-    assert known.mesh.contact == "prescribed"  # what is known stays
+    contact_stated = pair.with_(mesh__contact="prescribed").with_(stiffness="energy")
+    assert contact_stated.mesh.contact == "prescribed"  # what is known stays
 
 
 def test_a_file_of_before_in_which_contact_was_assumed_is_read():
@@ -197,8 +202,11 @@ def test_a_constant_of_any_pair_is_sampled():
 
 def test_results_say_whose_stiffness_is_given():
     pair = load_gear_pair("fzg_c")
-    given = pair.with_(stiffness=5e7)
-    assert lumped.mesh_stiffness(given).attrs["stiffness"] == "stiffness of the whole mesh, as given: 5e7 N/m"
+    stiffness_stated = pair.with_(stiffness=5e7)
+    assert (
+        lumped.mesh_stiffness(stiffness_stated).attrs["stiffness"]
+        == "stiffness of the whole mesh, as given: 5e7 N/m"
+    )
     curve = static_transmission_error(pair.with_(stiffness=lambda xi: 1e8 + 0.0 * xi))
     assert curve.attrs["stiffness"] == "stiffness of one tooth pair, as given: 1e8 N/m"
     assert "one tooth pair, model rectangular" in static_transmission_error(pair).attrs["stiffness"]

@@ -119,10 +119,10 @@ class TestVariations:
 
     def test_the_user_may_say_what_is_assumed(self):
         pair = load_gear_pair("fzg_c")
-        said = pair.with_(torque=90.0, assumed={"operating.pinion_torque": "90 N*m", "mesh.backlash": 17})
-        assert said.assumed["operating.pinion_torque"] == 90.0
-        assert "mesh.backlash" not in said.assumed  # it is another one
-        assert said.state("mesh.damping_ratio") is State.KNOWN
+        assuming = pair.with_(torque=90.0, assumed={"operating.pinion_torque": "90 N*m", "mesh.backlash": 17})
+        assert assuming.assumed["operating.pinion_torque"] == 90.0
+        assert "mesh.backlash" not in assuming.assumed  # it is another one
+        assert assuming.state("mesh.damping_ratio") is State.KNOWN
         backlash = leaf_paths(pair)["mesh.backlash"]  # mm
         table = {"mesh": {"backlash": f"{1e3 * backlash:g} um"}}  # keys without marks
         assert load_gear_pair(pair.to_mapping() | {"assumed": table}).assumed["mesh.backlash"] == backlash
@@ -131,11 +131,13 @@ class TestVariations:
         pair = load_gear_pair("nasa_art_25_31")
         speed = "operating.pinion_speed"
         assert {*pair.assumed} - {*pair.at_speed(3000.0).assumed} == {speed}
-        own = pair.with_({"gear.deviations": {"tolerance_class": 7}, "pinion.mounting": {"eccentricity": 8}})
-        extra = {*own.assumed} - {*pair.assumed}
+        deviated = pair.with_(
+            {"gear.deviations": {"tolerance_class": 7}, "pinion.mounting": {"eccentricity": 8}}
+        )
+        extra = {*deviated.assumed} - {*pair.assumed}
         assert "pinion.mounting.phase" in extra
-        assert own.healthy == load_gear_pair(own.healthy.to_mapping())
-        assert own.healthy.assumed == pair.assumed
+        assert deviated.healthy == load_gear_pair(deviated.healthy.to_mapping())
+        assert deviated.healthy.assumed == pair.assumed
 
 
 @pytest.mark.parametrize(("entry", "field", "words"), [

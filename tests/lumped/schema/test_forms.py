@@ -56,7 +56,7 @@ def test_the_three_starts_of_a_relief_are_one_place(name, kind, gear):
         "start_roll_angle": f"{place / base!r} rad",
     }
     xi = np.linspace(pair.geometry.L_XA, pair.geometry.L_XD, 41)
-    found = []
+    errors = []
     for field, value in stated.items():
         one = pair.with_({f"{gear}.{kind}": {"amount": 23, "shape": "parabolic", field: value}})
         relief = getattr(getattr(one, gear), kind)
@@ -65,15 +65,15 @@ def test_the_three_starts_of_a_relief_are_one_place(name, kind, gear):
         assert load_gear_pair(one.to_mapping()) == one
         assert one.state(f"{gear}.{kind}.{field}") is State.KNOWN
         assert not any(kind in path for path in one.assumed)
-        found.append(relief_error(one, xi))
-    assert found[0].max() == pytest.approx(23e-6, rel=1e-12)
-    for other in found[1:]:
-        np.testing.assert_allclose(other, found[0], rtol=0, atol=1e-16)
+        errors.append(relief_error(one, xi))
+    assert errors[0].max() == pytest.approx(23e-6, rel=1e-12)
+    for other in errors[1:]:
+        np.testing.assert_allclose(other, errors[0], rtol=0, atol=1e-16)
 
 
 def test_the_multibody_model_starts_a_relief_by_its_own_formulas():
     pair = unlike_pair("rack_25_degrees_always_pushing")
-    for gear, which in (("pinion", 0.0), ("gear", 1.0)):
+    for gear, gear_number in (("pinion", 0.0), ("gear", 1.0)):
         base, tip, start = ends(pair, gear)
         for field, value, places in (
             ("length", 2.17, (tip - 2.17, start + 2.17)),
@@ -87,8 +87,8 @@ def test_the_multibody_model_starts_a_relief_by_its_own_formulas():
                 none = {f"{g}.{k}": None for g in ("pinion", "gear") for k in RELIEFS}
                 one = pair.with_({**none, f"{gear}.{kind}": {"amount": 9, field: value}})
                 rows = reliefs(one, circles(one))
-                assert [(row[0], row[3]) for row in rows] == [(which, pytest.approx(9e-6))]
-                assert rows[0][1] == pytest.approx(place / base, rel=1e-11)
+                assert [(row.gear, row.amount) for row in rows] == [(gear_number, pytest.approx(9e-6))]
+                assert rows[0].start == pytest.approx(place / base, rel=1e-11)
 
 
 def test_a_relief_by_length_leaves_as_the_diameter_of_its_start(tmp_path):
@@ -97,8 +97,8 @@ def test_a_relief_by_length_leaves_as_the_diameter_of_its_start(tmp_path):
     base, tip, _ = ends(pair, "gear")
     write_rexs(pair, tmp_path / "pair.rexs")
     mapping, _ = gear_pair_from_rexs(tmp_path / "pair.rexs")
-    found = load_gear_pair(mapping).gear.tip_relief
-    assert found.start_roll_angle == pytest.approx((tip - 2.3) / base, rel=1e-9)
+    relief = load_gear_pair(mapping).gear.tip_relief
+    assert relief.start_roll_angle == pytest.approx((tip - 2.3) / base, rel=1e-9)
 
 
 def test_a_length_moves_with_the_tip_and_a_diameter_stays():
@@ -109,9 +109,9 @@ def test_a_length_moves_with_the_tip_and_a_diameter_stays():
         {"gear.tip_relief": {"amount": 21, "start_diameter": 2 * math.hypot(base, tip - 3.1)}}
     )
     lower = 2.0 * math.hypot(base, tip - 0.4)
-    moved, stayed = (one.with_(gear__tip_diameter=lower) for one in (by_length, by_diameter))
-    assert moved.gear.tip_relief.start_roll_angle == pytest.approx((tip - 3.5) / base, rel=1e-11)
-    assert stayed.gear.tip_relief.start_roll_angle == pytest.approx((tip - 3.1) / base, rel=1e-11)
+    length_kept, diameter_kept = (one.with_(gear__tip_diameter=lower) for one in (by_length, by_diameter))
+    assert length_kept.gear.tip_relief.start_roll_angle == pytest.approx((tip - 3.5) / base, rel=1e-11)
+    assert diameter_kept.gear.tip_relief.start_roll_angle == pytest.approx((tip - 3.1) / base, rel=1e-11)
 
 
 def test_naming_one_start_replaces_the_other():
@@ -183,10 +183,10 @@ DIN_6 = [((10, 50), 7, 18), ((50, 125), 7, 25), ((125, 280), 8, 28), ((280, 560)
 
 @pytest.mark.parametrize(("diameters", "pitch", "total"), DIN_6)
 def test_class_6_of_both_standards_is_near(diameters, pitch, total):
-    found = flank_tolerances(round(sum(diameters) / 2 / 1.5), 1.5e-3, 6)
-    assert 1e6 * found["f_p"] == pytest.approx(pitch, rel=0.2)
+    tolerances = flank_tolerances(round(sum(diameters) / 2 / 1.5), 1.5e-3, 6)
+    assert 1e6 * tolerances["f_p"] == pytest.approx(pitch, rel=0.2)
     # Small gears: the fifth of the theory page begins at 50 mm.
-    assert 1e6 * found["F_p"] == pytest.approx(total, rel=0.2 if diameters[0] >= 50 else 0.28)
+    assert 1e6 * tolerances["F_p"] == pytest.approx(total, rel=0.2 if diameters[0] >= 50 else 0.28)
 
 
 @pytest.mark.parametrize("value", ["DIN 5482 6", "ISO 6336 6", "AGMA 10", "ISO 53 6", "six", "", "ISO 1328"])
@@ -300,8 +300,8 @@ def test_the_assumed_fillet_follows_and_a_typed_one_stays():
     steep = pair.with_(pressure_angle=25)
     assert steep.basic_rack.fillet_radius_coefficient == 0.30
     assert steep.with_(pressure_angle=20) == pair.with_(pressure_angle=20)
-    known = {"basic_rack.fillet_radius_coefficient": 0.25}
-    for typed in (pair.with_(known), spurcheck.new_pair("29/41", **DRAWING, changes=known)):
+    fillet = {"basic_rack.fillet_radius_coefficient": 0.25}
+    for typed in (pair.with_(fillet), spurcheck.new_pair("29/41", **DRAWING, changes=fillet)):
         assert typed.with_(pressure_angle=25).basic_rack.fillet_radius_coefficient == 0.25
     with pytest.raises(ParameterError, match=r"fillet_radius_coefficient = 0.38: allowed <= 0.3179"):
         spurcheck.new_pair("29/41", **DRAWING, pressure_angle=25, basic_rack__fillet_radius_coefficient=0.38)
@@ -329,9 +329,9 @@ _KEYS = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("key", "which"), _KEYS)
-def test_a_key_of_what_is_not_computed_has_its_sentence(key, which):
-    sentence = re.escape(LIMITS[which].sentence)
+@pytest.mark.parametrize(("key", "limit"), _KEYS)
+def test_a_key_of_what_is_not_computed_has_its_sentence(key, limit):
+    sentence = re.escape(LIMITS[limit].sentence)
     base = unlike_pair("contact_ratio_2_3_on_shafts")
     with pytest.raises(ParameterError, match=sentence):
         base.with_({key: 5})
@@ -347,12 +347,12 @@ def test_keys_of_the_schema_have_no_such_sentence():
 
 
 @pytest.mark.parametrize(
-    ("teeth", "which"),
+    ("teeth", "limit"),
     [("20/-60", 1), ("-60/20", 1), ((20, -60), 1), ("20/−60", 1), ("12/24/48", 2), ((12, 24, 48), 2),
      ("12-24-48", 2), ("20/-40/60", 1)],
 )  # fmt: skip
-def test_teeth_of_what_is_not_computed_have_its_sentence(nasa, teeth, which):
-    sentence = re.escape(LIMITS[which].sentence)
+def test_teeth_of_what_is_not_computed_have_its_sentence(nasa, teeth, limit):
+    sentence = re.escape(LIMITS[limit].sentence)
     for action in (lambda: spurcheck.new_pair(teeth, **DRAWING), lambda: nasa.with_(teeth=teeth)):
         with pytest.raises(ParameterError, match=rf"teeth = .*allowed PINION/GEAR\. {sentence}"):
             action()

@@ -45,8 +45,8 @@ def test_tips_of_an_old_file_are_full_and_it_says_what_they_are_today(tmp_path, 
 def test_shifts_of_an_old_file_are_none_beside_a_centre_distance(tmp_path):
     text = TEXTS["heavily_relieved_under_load"]
     text = "".join(line for line in text.splitlines(keepends=True) if "profile_shift" not in line)
-    wide = load_gear_pair(tomllib.loads(text)).geometry.centre_distance * 1e3 + 0.2
-    text = text.replace("format = 1\n", f"format = 1\ncentre_distance = {wide!r}\n", 1)
+    centre_distance = load_gear_pair(tomllib.loads(text)).geometry.centre_distance * 1e3 + 0.2
+    text = text.replace("format = 1\n", f"format = 1\ncentre_distance = {centre_distance!r}\n", 1)
     with pytest.warns(
         OldFormatWarning, match=r"no profile shifts are written and 0 is taken; .* asks for 0\.0"
     ):

@@ -86,9 +86,9 @@ STIFFNESS = {
 }
 
 
-@pytest.mark.parametrize("given", STIFFNESS.values(), ids=STIFFNESS)
-def test_a_total_stiffness_is_that_of_the_mesh(given):
-    mesh = mesh_stiffness(PAIR.with_(stiffness=given, mesh__contact="prescribed"))
+@pytest.mark.parametrize("stiffness", STIFFNESS.values(), ids=STIFFNESS)
+def test_a_total_stiffness_is_that_of_the_mesh(stiffness):
+    mesh = mesh_stiffness(PAIR.with_(stiffness=stiffness, mesh__contact="prescribed"))
     # Monotone cubics with h = 1/240 of a period, second order at extremes: (2 pi h)^2/8 of the amplitude.
     amplitude = (2 * np.pi / 240) ** 2 / 8 * 2e7
     assert np.abs(mesh["mesh_stiffness"] - total(mesh["phase"])).max() < 2 * amplitude

@@ -117,9 +117,9 @@ class TestVariations:
         assert varied.shafts.gear.length == 0.16
         assert leaf_paths(varied)["shafts.pinion.bearings.1.position"] == 152.4
         assert dict(varied.sources)["shafts.pinion.bearings.1.position"] == "varied by the user"
-        whole = varied.with_({"shafts.pinion.bearings": pair.shafts.pinion.bearings[::-1]})
-        assert whole.shafts.pinion.bearings == pair.shafts.pinion.bearings[::-1]
-        assert "shafts.pinion.bearings.1.position" not in dict(whole.sources)
+        reordered = varied.with_({"shafts.pinion.bearings": pair.shafts.pinion.bearings[::-1]})
+        assert reordered.shafts.pinion.bearings == pair.shafts.pinion.bearings[::-1]
+        assert "shafts.pinion.bearings.1.position" not in dict(reordered.sources)
         for path in ("segments.1.length", "segments.one.length", "segments.0.length.x", "segments.1"):
             with pytest.raises(ParameterError, match="unknown key"):
                 pair.with_({f"shafts.gear.{path}": 20})
@@ -255,8 +255,8 @@ def _violations(value, node, root):
         wrong += [key for key in node.get("required", ()) if key not in value]
         strange = node.get("additionalProperties") is False
         for key, item in value.items():
-            known = node["properties"].get(key)
-            wrong += _violations(item, known, root) if known else [key] * strange
+            schema = node["properties"].get(key)
+            wrong += _violations(item, schema, root) if schema else [key] * strange
     return wrong
 
 
@@ -270,9 +270,9 @@ def test_the_old_name_of_prescribed_contact_is_read_with_a_note(nasa):
 @pytest.mark.parametrize("before", ["rectangular", "energy", "finite_elements"])
 def test_one_change_names_another_stiffness_model(nasa, before, model):
     pair = load_gear_pair(nasa).with_({"mesh.stiffness": {"model": before}})
-    found = pair.with_({"mesh.stiffness.model": model})
+    changed = pair.with_({"mesh.stiffness.model": model})
     expected = pair.with_({"mesh.stiffness": {"model": model}})
-    assert found.mesh == expected.mesh
+    assert changed.mesh == expected.mesh
     changes = {"mesh.stiffness.scale": "iso6336", "mesh.stiffness.model": "energy"}
     assert pair.with_(changes).mesh.stiffness.scale == "iso6336"
 

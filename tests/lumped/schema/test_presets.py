@@ -90,8 +90,8 @@ PUBLISHED = {
 @pytest.mark.parametrize("name", PUBLISHED)
 def test_published_data(name):
     pair = load_gear_pair(name)
-    found = leaf_paths(pair)
-    assert {path: found[path] for path in PUBLISHED[name]} == PUBLISHED[name]
+    values = leaf_paths(pair)
+    assert {path: values[path] for path in PUBLISHED[name]} == PUBLISHED[name]
     g = geometry(pair)
     if name == "fzg_c":
         assert (g.tip_radius_pinion, g.tip_radius_gear) == (41.318e-3, 59.272e-3)

@@ -12,9 +12,9 @@ def problem(source, field, **expected):
     """The one problem of a refused source that concerns ``field``."""
     with pytest.raises(ParameterError) as caught:
         load_gear_pair(source)
-    found = [p for p in caught.value.problems if p.field == field]
-    assert len(found) == 1, f"{field} not named once in: {caught.value}"
-    one = found[0]
+    problems = [p for p in caught.value.problems if p.field == field]
+    assert len(problems) == 1, f"{field} not named once in: {caught.value}"
+    one = problems[0]
     # Every part that the user needs is there, and the message shows all of it.
     for part in (one.field, one.value, one.allowed, one.action):
         assert part

@@ -97,10 +97,11 @@ def fields(section, prefix=""):
 @pytest.mark.parametrize("pair", [*PAIRS, None], ids=lambda pair: pair.name if pair else "shafts")
 def test_what_a_field_reads_as_can_be_written_back(pair, shafted):
     pair = pair or shafted
-    found = dict(fields(pair))
-    assert len(found) > 50
-    for path, value in found.items():
-        if path.rpartition(".")[2] != "model":  # the model of a section goes with its section
+    values = dict(fields(pair))
+    assert len(values) > 50
+    for path, value in values.items():
+        _, _, key = path.rpartition(".")
+        if key != "model":  # the model of a section goes with its section
             assert leaf_paths(pair.with_({path: value})) == leaf_paths(pair), path
         if path.endswith("start_roll_angle") and path not in leaf_paths(pair):
             # A relief that a diameter or a length states: typing the angle states the same start by it.
@@ -110,13 +111,13 @@ def test_what_a_field_reads_as_can_be_written_back(pair, shafted):
                 pair.with_({path: repr(value)}).to_toml().split("[sources]")[0]
                 == (pair.to_toml().split("[sources]")[0])
             ), path
-    assert leaf_paths(pair.with_(found)) == leaf_paths(pair)
+    assert leaf_paths(pair.with_(values)) == leaf_paths(pair)
     assert load_gear_pair(tomllib.loads(pair.to_toml())) == pair
 
 
 def test_every_number_with_a_unit_shows_it(quantity_field, known_fields):
     path, quantity = quantity_field
-    values = [known[path] for known in known_fields if path in known]
+    values = [values_of_pair[path] for values_of_pair in known_fields if path in values_of_pair]
     values = [value for value in values if value is not None and not isinstance(value, str)]
     assert values, "no pair of the test has this field"
     for value in values:

@@ -8,6 +8,8 @@ from tests.unlike_pairs import unlike_pair
 
 #: A displacement of 1 um along the reference circle of a 25-degree rack: so much along the line of action.
 MOVED = 1e-6 * np.cos(np.radians(25.0))
+#: The tooth that is displaced, counted from 1.
+DISPLACED_TOOTH = 3
 
 
 @pytest.mark.parametrize(("gear", "lag"), [("pinion", MOVED), ("gear", -MOVED)])
@@ -21,15 +23,15 @@ def test_a_displaced_tooth_that_carries_alone_makes_the_gear_lag_or_lead(gear, l
     """
     pair = unlike_pair("rack_25_degrees_always_pushing")
 
-    def error(moved):
+    def error(displacement):
         index = [0.0] * getattr(pair, gear).teeth
-        index[2] = moved
+        index[DISPLACED_TOOTH - 1] = displacement
         deviations = {f"{gear}.deviations": {"index": index, "first_order": "steps"}}
         return lumped.static_sharing(pair.with_(deviations), samples_per_cycle=32)
 
     plain = error(0.0)
-    found = error(1.0)
-    change = (found["transmission_error"] - plain["transmission_error"]).to_numpy().ravel()
+    displaced = error(1.0)
+    change = (displaced["transmission_error"] - plain["transmission_error"]).to_numpy().ravel()
     # Tooth 3 comes to A after two mesh cycles. It carries alone in the last third of the cycle that follows.
     carrying = (plain["normal_load"].to_numpy() > 0.0).sum(axis=plain["normal_load"].dims.index("pair"))
     cycle = np.arange(change.size) // 32

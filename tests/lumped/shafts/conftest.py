@@ -25,11 +25,14 @@ def _on_short_shafts(pair):
     """Short, light and stiff shafts, each in one bearing under its gear with its springs and dampers."""
     b = bodies(pair)
     changes = {"shafts": {"damping_ratio": 0}}
-    own = 10 * math.pi * 0.01**2 * 0.02  # of the shaft, which is taken off the gear
+    shaft_mass = 10 * math.pi * 0.01**2 * 0.02  # of the shaft, which is taken off the gear
     for name in GEARS:
         mass = getattr(b, f"mass_{name}")
         inertia = getattr(b, f"inertia_{name}")
-        changes |= {f"{name}.mass": mass - own, f"{name}.inertia": inertia - 0.5 * own * 0.01**2}
+        changes |= {
+            f"{name}.mass": mass - shaft_mass,
+            f"{name}.inertia": inertia - 0.5 * shaft_mass * 0.01**2,
+        }
         springs = getattr(pair.bearings, name)
         bearing = {"position": 10, "tilt_stiffness": 1e9}
         for d in ("loa", "oloa"):

@@ -17,8 +17,8 @@ HIGHEST = 2 * math.pi * 20e3
 MESH = beam([HOLLOW], [], HIGHEST, 0.4)
 
 
-def frequencies(mass, stiffness, held):
-    free = np.delete(np.arange(mass.shape[0]), held)
+def frequencies(mass, stiffness, fixed):
+    free = np.delete(np.arange(mass.shape[0]), fixed)
     values = eigh(stiffness[np.ix_(free, free)], mass[np.ix_(free, free)], eigvals_only=True)
     return np.sqrt(values[values > 1e3])
 
@@ -31,7 +31,8 @@ def timoshenko(omega):
     shear = HOLLOW.shear_rigidity
     half = 0.5 * omega**2 * (line / shear + rotary / flexural)
     root = math.sqrt(0.25 * omega**4 * (line / shear - rotary / flexural) ** 2 + omega**2 * line / flexural)
-    a, b = math.sqrt(root - half), math.sqrt(root + half)
+    a = math.sqrt(root - half)
+    b = math.sqrt(root + half)
     inertia = omega**2 * line / shear
     return a, b, (a * a + inertia) / a, (b * b - inertia) / b
 
@@ -63,11 +64,11 @@ ENDS = {
 
 @pytest.mark.parametrize("ends", ENDS, ids="-".join)
 def test_frequencies_solve_the_exact_equation(ends):
-    found = frequencies(MESH.mass, MESH.stiffness, ENDS[ends])[:4]
-    for omega in found[found < HIGHEST]:
+    natural = frequencies(MESH.mass, MESH.stiffness, ENDS[ends])[:4]
+    for omega in natural[natural < HIGHEST]:
         exact = brentq(determinant, omega * (1 - 3e-5), omega * (1 + 3e-5), args=(ends,), xtol=1e-9 * omega)
         assert -1e-10 < omega / exact - 1 < 1e-6
-    assert found[1] < HIGHEST
+    assert natural[1] < HIGHEST
 
 
 def test_statics_is_exact_and_steps_are_where_they_are():
@@ -122,18 +123,18 @@ def test_torsion_of_two_and_three_inertias():
     piece = Piece(0.1, 0.02, 0.0, 206e9, 0.3, 10.0)
     spring = piece.shear_modulus * 2 * piece.second_moment / piece.length
     motor = CoupledInertia.model_validate({"position": 0, "inertia": 0.02, "coupling_stiffness": 1e4})
-    found = supported_shaft(rod, disc, motor, 1e4).planes[2]
+    _, _, torsion = supported_shaft(rod, disc, motor, 1e4).planes
     series = 1 / (1 / spring + 1 / 1e4)
-    assert found.frequencies[0] == 0.0
-    assert found.frequencies[1] == pytest.approx(math.sqrt(series * (1 / 0.01 + 1 / 0.02)), rel=1e-4)
+    assert torsion.frequencies[0] == 0.0
+    assert torsion.frequencies[1] == pytest.approx(math.sqrt(series * (1 / 0.01 + 1 / 0.02)), rel=1e-4)
     # The gear's body as a third inertia would have it: rim behind a spring, here with no inertia of the bore.
-    soft = supported_shaft(rod, Disc(1.0, 0.01, 0.005, 2e4), motor, 1e4).planes[2]
+    _, _, soft = supported_shaft(rod, Disc(1.0, 0.01, 0.005, 2e4), motor, 1e4).planes
     series = 1 / (1 / series + 1 / 2e4)
     assert soft.frequencies[1] == pytest.approx(math.sqrt(series * (1 / 0.01 + 1 / 0.02)), rel=1e-4)
     heavy = shaft(density=7850)
     inertia = 7850 * 2 * piece.second_moment * 0.2
-    whole = supported_shaft(heavy, disc, motor, 1e4).planes[2]
-    assert 1 / whole.shapes[0, 0] ** 2 == pytest.approx(0.03 + inertia, rel=1e-9)
+    _, _, heavy_torsion = supported_shaft(heavy, disc, motor, 1e4).planes
+    assert 1 / heavy_torsion.shapes[0, 0] ** 2 == pytest.approx(0.03 + inertia, rel=1e-9)
 
 
 def test_a_disc_whirls_at_the_frequencies_of_the_closed_form():
@@ -141,23 +142,24 @@ def test_a_disc_whirls_at_the_frequencies_of_the_closed_form():
     rod = shaft()
     disc = Disc(1.0, 0.01, 0.006)
     omega = 3000.0
-    found = supported_shaft(rod, disc, None, 3e4)
-    x, y = (modes.frequencies for modes in found.planes[:2])
+    rotor = supported_shaft(rod, disc, None, 3e4)
+    x, y = (modes.frequencies for modes in rotor.planes[:2])
     n = x.size
     stiffness = np.diag(np.append(x, y) ** 2)
     gyroscopic = np.zeros((2 * n, 2 * n))
-    gyroscopic[:n, n:] = omega * found.spin
-    gyroscopic[n:, :n] = -omega * found.spin.T
+    gyroscopic[:n, n:] = omega * rotor.spin
+    gyroscopic[n:, :n] = -omega * rotor.spin.T
     state = np.block([[np.zeros((2 * n, 2 * n)), np.eye(2 * n)], [-stiffness, -gyroscopic]])
     values, vectors = np.linalg.eig(state)
     spring = 12 * 206e9 * math.pi * 0.02**4 / 64 / 0.2
     piece = Piece(0.2, 0.02, 0.0, 206e9, 0.3, 10.0)
     spring /= 1 + 12 * 206e9 * piece.second_moment / (piece.shear_rigidity * 0.2**2)
     root = math.sqrt((0.01 * omega) ** 2 + 4 * 0.006 * spring)
-    slope = found.planes[0].shapes[found.gear[0] + 1]
+    slope = rotor.planes[0].shapes[rotor.gear[0] + 1]
     for sense, speed in ((1, (0.01 * omega + root) / 0.012), (-1, (root - 0.01 * omega) / 0.012)):
-        at = np.argmin(np.abs(values - 1j * speed))
-        assert values[at].imag == pytest.approx(speed, rel=1e-3)
+        nearest = np.argmin(np.abs(values - 1j * speed))
+        assert values[nearest].imag == pytest.approx(speed, rel=1e-3)
         # Forward is the sense of rotation, counter-clockwise: y follows x by a quarter turn.
-        x_slope, y_slope = slope @ vectors[:n, at], slope @ vectors[n : 2 * n, at]
+        x_slope = slope @ vectors[:n, nearest]
+        y_slope = slope @ vectors[n : 2 * n, nearest]
         assert y_slope / x_slope == pytest.approx(-1j * sense, abs=1e-6)

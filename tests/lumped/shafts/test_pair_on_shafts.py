@@ -46,11 +46,11 @@ def test_motion_on_elastic_shafts(shafted):
     assert list(run.bearing.to_numpy()) == ["pinion 1", "pinion 2", "gear 1"]
     # A transient from the periodic state stays, and one from rest does not.
     system = periodic_system(shafted, "full", supports="shafts")
-    moved = simulate(shafted, 2, samples_per_cycle=64, initial="periodic", supports="shafts")
-    for part in (moved.isel(time=slice(0, 64)), moved.isel(time=slice(64, 128))):
+    motion = simulate(shafted, 2, samples_per_cycle=64, initial="periodic", supports="shafts")
+    for part in (motion.isel(time=slice(0, 64)), motion.isel(time=slice(64, 128))):
         size = float(np.abs(run.dte).max())
         np.testing.assert_allclose(part.dte, run.dte, rtol=0, atol=1e-9 * size)
-    assert np.abs(moved.dte[0] - moved.dte[128]) < 1e-9 * size
+    assert np.abs(motion.dte[0] - motion.dte[128]) < 1e-9 * size
     # At rest under the mean load, bearings and teeth bear it: moments about a bearing give the other's force.
     rest = simulate(shafted, 1, samples_per_cycle=8, supports="shafts").isel(time=0)
     load = shafted.operating.pinion_torque / shafted.geometry.base_radius_pinion
@@ -61,19 +61,19 @@ def test_motion_on_elastic_shafts(shafted):
 
 
 def test_every_form_is_the_same_system(shafted):
-    whole, relative, feedback = (
+    full, relative, feedback = (
         periodic_system(shafted, form, supports="shafts") for form in ("full", "elastic", "mesh")
     )
-    m = len(whole.coordinates)
+    m = len(full.coordinates)
     keep = np.delete(np.arange(2 * m), [0, m])
-    time = 0.3 * whole.period
+    time = 0.3 * full.period
     for other in (relative, feedback):
-        np.testing.assert_array_equal(whole.A(time)[np.ix_(keep, keep)], other.A(time))
-    assert not whole.A(time)[:, 0].any()  # the common rotation is felt by nobody
+        np.testing.assert_array_equal(full.A(time)[np.ix_(keep, keep)], other.A(time))
+    assert not full.A(time)[:, 0].any()  # the common rotation is felt by nobody
     # Opposite senses: the moments of the pinion's and the gear's shaft have opposite signs.
-    gyroscopic = whole.gyroscopic
-    owner = whole.supports.modes.shaft
-    kind = whole.supports.modes.kind
+    gyroscopic = full.gyroscopic
+    owner = full.supports.modes.shaft
+    kind = full.supports.modes.kind
     np.testing.assert_array_equal(gyroscopic, -gyroscopic.T)
     signs = [
         np.trace(gyroscopic[np.ix_((owner == j) & (kind == 0), (owner == j) & (kind == 1))]) for j in (0, 1)
@@ -97,8 +97,8 @@ def test_shafts_under_springs_are_the_springs(unequal, on_short_shafts):
             expected = getattr(getattr(pair.bearings, name), field)
             assert getattr(getattr(again.bearings, name), field) == pytest.approx(expected, rel=1e-4), field
         for kind in ("mass", "inertia"):
-            given = getattr(getattr(again, name), kind)
-            assert given == pytest.approx(getattr(bodies(pair), f"{kind}_{name}"), rel=1e-6)
+            spring = getattr(getattr(again, name), kind)
+            assert spring == pytest.approx(getattr(bodies(pair), f"{kind}_{name}"), rel=1e-6)
     assert again.shafts is None
 
 
@@ -117,11 +117,11 @@ def resistance(pair, omega, direction="loa"):
     stiffness = mesh.stiffness.copy()
     mass = mesh.mass.copy()
     mass[[2 * gear, 2 * gear + 1], [2 * gear, 2 * gear + 1]] += disc.mass, disc.tilting
-    at = [2 * mesh.node(b.position) for b in shaft.bearings]
-    stiffness[at, at] += [getattr(b, f"{direction}_stiffness") for b in shaft.bearings]
+    rows = [2 * mesh.node(b.position) for b in shaft.bearings]
+    stiffness[rows, rows] += [getattr(b, f"{direction}_stiffness") for b in shaft.bearings]
     squares, modes = eigh(stiffness, mass)
     damping = mass @ modes * (2.0 * pair.shafts.damping_ratio * np.sqrt(squares)) @ modes.T @ mass
-    damping[at, at] += [getattr(b, f"{direction}_damping") for b in shaft.bearings]
+    damping[rows, rows] += [getattr(b, f"{direction}_damping") for b in shaft.bearings]
     bending = stiffness - omega**2 * mass + 1j * omega * damping
     twist = np.zeros((n + 1, n + 1))
     twist[:n, :n] = mesh.twist_stiffness - omega**2 * mesh.twist_mass
@@ -137,16 +137,16 @@ def test_condensed_gears_feel_their_shafts(shafted, frequency):
     shafted = shafted.with_({"shafts.max_frequency": 50_000})
     pair = condensed_bearings(shafted, frequency)
     omega = 2 * math.pi * frequency
-    at = omega or 10.0
-    turning = resistance(shafted, at)[1]
-    assert -(at**2) * pair.pinion.inertia == pytest.approx(turning, rel=2e-3)
+    omega_of_ratio = omega or 10.0
+    turning = resistance(shafted, omega_of_ratio)[1]
+    assert -(omega_of_ratio**2) * pair.pinion.inertia == pytest.approx(turning, rel=2e-3)
     for direction in ("loa", "oloa"):
-        bearing = resistance(shafted, at, direction)[0]
+        bearing = resistance(shafted, omega_of_ratio, direction)[0]
         stiffness = getattr(pair.bearings.pinion, f"{direction}_stiffness")
         assert stiffness - omega**2 * pair.pinion.mass == pytest.approx(bearing.real, rel=2e-3)
         ratio = getattr(pair.bearings.pinion, f"{direction}_damping_ratio")
         damping = 2.0 * ratio * math.sqrt(stiffness * pair.pinion.mass)
-        assert damping == pytest.approx(bearing.imag / at, rel=2e-3)
+        assert damping == pytest.approx(bearing.imag / omega_of_ratio, rel=2e-3)
     near, far = (0.999 * omega, 1.001 * omega) if omega else (10.0, 100.0)
     slope = (resistance(shafted, far)[0] - resistance(shafted, near)[0]).real / (far**2 - near**2)
     assert pair.pinion.mass == pytest.approx(-slope, rel=1e-3)
@@ -161,7 +161,8 @@ def test_no_spring_above_a_resonance(shafted):
 
 def test_modes_of_the_pair(unequal, shafted, on_short_shafts):
     modes = shaft_modes(on_short_shafts(unequal))
-    b, k = bodies(unequal), mesh_cycle(unequal).mean_stiffness
+    b = bodies(unequal)
+    k = mesh_cycle(unequal).mean_stiffness
     pinion, gear = unequal.bearings.pinion, unequal.bearings.gear
     # q, x_p, x_g of the 6-DOF model in units of root mass; y of both gears by themselves.
     u = np.array([1 / math.sqrt(b.effective_mass), 1 / math.sqrt(b.mass_pinion), -1 / math.sqrt(b.mass_gear)])
@@ -183,11 +184,11 @@ def test_modes_of_the_pair(unequal, shafted, on_short_shafts):
 def test_each_gear_is_a_disc_of_its_own_on_its_shaft(unlike):
     """J/2 + m b^2/12 against tilting, with the whole face width; its body twists on the shaft."""
     b = bodies(unlike)
-    own = (
+    expected = (
         (unlike.pinion, b.mass_pinion, b.inertia_pinion),
         (unlike.gear, b.mass_gear, b.inertia_gear),
     )
-    for which, (gear, mass, inertia) in enumerate(own):
-        found = discs(unlike)[which]
-        assert (found.mass, found.inertia) == (mass, inertia)
-        assert found.tilting == pytest.approx(0.5 * inertia + mass * gear.face_width**2 / 12.0, rel=1e-12)
+    for gear_index, (gear, mass, inertia) in enumerate(expected):
+        disc = discs(unlike)[gear_index]
+        assert (disc.mass, disc.inertia) == (mass, inertia)
+        assert disc.tilting == pytest.approx(0.5 * inertia + mass * gear.face_width**2 / 12.0, rel=1e-12)

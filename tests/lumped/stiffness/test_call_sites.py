@@ -67,19 +67,19 @@ def test_the_contact_between_unlike_materials(unlike):
         nu = one.poisson_ratio
         shape = np.log(2.0 * depth / half) - nu / (2.0 * (1.0 - nu))
         expected += 2.0 / math.pi * flexible * shape / by_hand.width
-    found = pair_compliance(unlike, xi, hertz="weber_banaschek").hertz
-    np.testing.assert_allclose(found, expected, rtol=1e-9)
+    compliance = pair_compliance(unlike, xi, hertz="weber_banaschek").hertz
+    np.testing.assert_allclose(compliance, expected, rtol=1e-9)
     assert weber_banaschek_softening(unlike) == pytest.approx(sum(plane) / math.pi / by_hand.width, rel=1e-12)
 
 
 def test_each_body_twists_with_its_own_bore_width_and_material(unlike):
     """4 pi G b/(1/r_i^2 - 1/r_f^2), Lame."""
-    for found, gear in zip(body_twist(unlike), ("pinion", "gear"), strict=True):
-        own = getattr(unlike, gear)
+    for twist_stiffness, gear in zip(body_twist(unlike), ("pinion", "gear"), strict=True):
+        wheel = getattr(unlike, gear)
         hand = ByHand(unlike, gear)
-        shear = own.youngs_modulus / (2.0 * (1.0 + own.poisson_ratio))
-        radii = (0.5 * own.bore) ** -2 - (1e-3 * hand.r_f) ** -2
-        assert found == pytest.approx(4.0 * math.pi * shear * own.face_width / radii, rel=1e-9)
+        shear = wheel.youngs_modulus / (2.0 * (1.0 + wheel.poisson_ratio))
+        radii = (0.5 * wheel.bore) ** -2 - (1e-3 * hand.r_f) ** -2
+        assert twist_stiffness == pytest.approx(4.0 * math.pi * shear * wheel.face_width / radii, rel=1e-9)
 
 
 def test_plane_strain_is_plane_stress_of_another_material():
@@ -88,9 +88,9 @@ def test_plane_strain_is_plane_stress_of_another_material():
     strained = elastic_teeth(pair.with_(pinion__poisson_ratio=0.3), "strain")[0]
     stressed = elastic_teeth(pair.with_(pinion__poisson_ratio=0.3 / 0.7), "stress")[0]
     length = np.linspace(strained.wheel.tooth.form_length, 22e-3, 5)[1:-1] / strained.wheel.tooth.module
-    found = strained.flank.deflection(length)
+    deflection = strained.flank.deflection(length)
     expected = stressed.flank.deflection(length)
-    assert found == pytest.approx(expected, rel=1e-12)
+    assert deflection == pytest.approx(expected, rel=1e-12)
 
 
 @pytest.mark.parametrize(

@@ -64,8 +64,8 @@ def test_parabola_has_its_peak_in_the_middle_and_its_ends():
 
 
 def test_default_parabola_has_the_mean_total_stiffness_of_iso(unlike):
-    found = mesh_stiffness(unlike.healthy.with_(mesh__stiffness={"model": "parabolic"})).attrs
-    assert found["mean"] == pytest.approx(found["iso_mean"], rel=1e-12)
+    attributes = mesh_stiffness(unlike.healthy.with_(mesh__stiffness={"model": "parabolic"})).attrs
+    assert attributes["mean"] == pytest.approx(attributes["iso_mean"], rel=1e-12)
 
 
 @pytest.mark.parametrize("ramp", [0.3e-3, 2e-3, (HIGH - LOW) / 2])
@@ -77,9 +77,11 @@ def test_ramp_rises_from_zero_and_is_smooth(ramp):
     assert k([LOW + edges, HIGH - edges]) == pytest.approx(0.0, abs=ROUNDING * PEAK)
     assert slope([LOW + edges, HIGH - edges]) == pytest.approx(0.0, abs=1e-9 * scale)
     for join in k.switches:
-        left, right = join - 1e-12, join + 1e-12  # slopes of the two pieces: curvature * 2e-12 m apart
-        assert k(left) == pytest.approx(float(k(right)), rel=1e-7)
-        assert slope(left) == pytest.approx(float(slope(right)), abs=1e-7 * scale)
+        # slopes of the two pieces: curvature * 2e-12 m apart
+        before = join - 1e-12
+        after = join + 1e-12
+        assert k(before) == pytest.approx(float(k(after)), rel=1e-7)
+        assert slope(before) == pytest.approx(float(slope(after)), abs=1e-7 * scale)
     plain = parabola(LOW, HIGH, PEAK, 0.7)
     between = np.linspace(LOW + ramp, HIGH - ramp, 11)
     assert k(between) == pytest.approx(plain(between), rel=1e-11)
@@ -114,10 +116,11 @@ def test_square_root_of_the_ramp_is_smooth():
 def test_finite_elements_are_the_plane_compliance_at_any_torque():
     pair = with_model(model="finite_elements")
     xi = np.linspace(*pair_stiffness(pair).interval, 9)[1:-1]
-    k, (w, *_) = pair_stiffness(pair)(xi), pair.mesh.stiffness.neighbours(pair)
-    found = plane_compliance(pair, phases=3)
-    both = found.position.values[0]
-    assert found.compliance.values[0] == pytest.approx(
+    k = pair_stiffness(pair)(xi)
+    w, *_ = pair.mesh.stiffness.neighbours(pair)
+    plane = plane_compliance(pair, phases=3)
+    both = plane.position.values[0]
+    assert plane.compliance.values[0] == pytest.approx(
         np.array(
             [
                 [1.0 / pair_stiffness(pair)(both[0]), w(both[0])],
@@ -131,8 +134,10 @@ def test_finite_elements_are_the_plane_compliance_at_any_torque():
     softening = pair.mesh.stiffness.softening(pair)
     assert 1.0 / pair_stiffness(twice)(xi) == pytest.approx(1.0 / k - softening * np.log(2.0), rel=1e-9)
     # Twice as wide under the same load per width.
-    wide = pair.with_(pinion__face_width=12.7, gear__face_width=12.7, operating__pinion_torque="113 N m")
-    assert pair_stiffness(wide)(xi) == pytest.approx(2.0 * k, rel=1e-9)
+    wide_gears = pair.with_(
+        pinion__face_width=12.7, gear__face_width=12.7, operating__pinion_torque="113 N m"
+    )
+    assert pair_stiffness(wide_gears)(xi) == pytest.approx(2.0 * k, rel=1e-9)
 
 
 def test_worked_example_of_the_standard():

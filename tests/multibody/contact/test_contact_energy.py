@@ -12,9 +12,20 @@ from lumped.quasi_static.loaded import StaticMesh
 from lumped.quasi_static.tooth_error import corner_gap as lumped_corner_gap
 from multibody.contact import kinematics as kn
 from multibody.contact.elements import GRADUAL, ContactLaw, elastic_load, shared_loads, stored_energy
-from multibody.contact.kernels import contact_forces
+from multibody.contact.kernels import tooth_forces
 from multibody.contact.machine import machine
-from multibody.contact.records import CONTACTS_SIZE, PAIR, opened_contacts
+from multibody.contact.records import (
+    CONTACTS_SIZE,
+    PAIR,
+    PHI_G,
+    PHI_P,
+    WRENCH,
+    X_G,
+    X_P,
+    Y_G,
+    Y_P,
+    opened_contacts,
+)
 from multibody.run.effects import effect_flags
 from tests.lumped.mesh.element_calls import Mesh
 from tests.unlike_pairs import unlike_pair
@@ -54,18 +65,18 @@ WITH_CORNERS = dict.fromkeys(PAIRS, 11) | {"relief": 0, "unlike teeth": 1}
 def contact(numbers, t, q, v=None, flags=ALL):
     contacts = np.zeros(CONTACTS_SIZE)
     state = np.array([q, np.zeros(6) if v is None else v, np.zeros(6)])
-    count = contact_forces(t, state, numbers.packed, flags, contacts)
-    return state[2], opened_contacts(contacts)[:count]
+    count = tooth_forces(t, state, numbers.packed, flags, contacts)
+    return state[WRENCH], opened_contacts(contacts)[:count]
 
 
 def states(numbers, number, flank=kn.DRIVE):
     """Times and states with the flanks pressed by 5 to 30 um and the centres off by some um."""
     rng = np.random.default_rng(4)
     p = numbers.record
-    turned = 0.0 if flank == kn.DRIVE else PAIRS["parabolic"].geometry.normal_backlash
+    backlash = 0.0 if flank == kn.DRIVE else PAIRS["parabolic"].geometry.normal_backlash
     for _ in range(number):
         q = rng.uniform(-3e-6, 3e-6, 6)
-        q[[2, 5]] = -flank * (turned + rng.uniform(5e-6, 3e-5)) / p.geometry.radius_p, 0.0
+        q[[PHI_P, PHI_G]] = -flank * (backlash + rng.uniform(5e-6, 3e-5)) / p.geometry.radius_p, 0.0
         yield rng.uniform() * numbers.period, q
 
 
@@ -73,7 +84,7 @@ def states(numbers, number, flank=kn.DRIVE):
 def test_the_wrench_is_minus_the_gradient_of_the_energy(name, flank):
     numbers = machine(PAIRS[name], ALL)
     length = np.array([1.0, 1.0, numbers.record.geometry.radius_p] * 2)
-    length[5] = numbers.record.geometry.radius_g
+    length[PHI_G] = numbers.record.geometry.radius_g
     beyond = 0
     worst = []
     pressing = []
@@ -103,9 +114,11 @@ def test_action_is_reaction_in_force_and_moment(name, flank):
     p.pair_law.damping = 30.0
     for t, q in states(numbers, 40, flank):
         w, contacts = contact(numbers, t, q, np.random.default_rng(1).normal(size=6) * 0.01)
-        px, py = p.geometry.centre_p_x + q[0], p.geometry.centre_p_y + q[1]
-        gx, gy = p.geometry.centre_g_x + q[3], p.geometry.centre_g_y + q[4]
-        moment = w[2] + w[5] + px * w[1] - py * w[0] + gx * w[4] - gy * w[3]
+        px = p.geometry.centre_p_x + q[X_P]
+        py = p.geometry.centre_p_y + q[Y_P]
+        gx = p.geometry.centre_g_x + q[X_G]
+        gy = p.geometry.centre_g_y + q[Y_G]
+        moment = w[PHI_P] + w[PHI_G] + px * w[Y_P] - py * w[X_P] + gx * w[Y_G] - gy * w[X_G]
         scale = max(contacts["load"].sum(), 1.0)
         assert np.abs(w[:2] + w[3:5]).max() <= 1e-13 * scale  # 0 where deviations keep the teeth apart
         assert abs(moment) <= 1e-12 * scale * p.geometry.radius_p
@@ -121,7 +134,8 @@ def test_corner_gap_has_its_derivatives_its_inverse_and_the_lumped_value(beyond)
     gap, slope, by_length = kn.corner_gap(beyond, *arguments)
     assert gap == pytest.approx(float(lumped_corner_gap(g, np.array(g.L_XA - beyond))), rel=1e-9, abs=2e-17)
     assert kn.corner_reach(gap, *arguments) == pytest.approx(beyond, rel=1e-9)
-    h, tip, length, *radii = 1e-7, *arguments
+    h = 1e-7
+    tip, length, *radii = arguments
     ends = [kn.corner_gap(beyond + s, *arguments)[0] for s in (h, -h)]
     longer = [kn.corner_gap(beyond, tip, length + s, *radii)[0] for s in (h, -h)]
     assert slope == pytest.approx((ends[0] - ends[1]) / (2 * h), rel=1e-6)
@@ -132,23 +146,23 @@ def test_corner_gap_has_its_derivatives_its_inverse_and_the_lumped_value(beyond)
     assert gap == pytest.approx(leading, rel=beyond / (length - tip))
 
 
-@pytest.mark.parametrize("which", ["pinion", "gear"])
+@pytest.mark.parametrize("gear", ["pinion", "gear"])
 @pytest.mark.parametrize("beyond", [1e-5, 3e-4, 1.5e-3])
-def test_a_corner_pushes_with_its_load_along_a_tangent_of_the_mates_base_circle(which, beyond):
+def test_a_corner_pushes_with_its_load_along_a_tangent_of_the_mates_base_circle(gear, beyond):
     """The normal of the flank that a corner touches is a tangent of the base circle of this flank."""
     numbers = machine(PAIRS["parabolic"])
     p = numbers.record
     radii = numbers.base_radii
     tips = np.array([p.geometry.tip_p, p.geometry.tip_g])
     length = p.geometry.L_XY + 1e-5
-    number = 0 if which == "pinion" else 1
+    number = 0 if gear == "pinion" else 1
     rho = np.full(2, length - tips[number] - beyond)
     rho[number] = tips[number] + beyond
     line = kn.Line(1.0, 0.0, length, kn.DRIVE, *radii)
     wrench = np.zeros(6)
-    found = kn.corners_at(line, *rho, tuple(tips), (0.0, 0.0))
+    corners = kn.corners_at(line, *rho, tuple(tips), (0.0, 0.0))
     kn.add_wrench(wrench, line, 1.0, 0.0, 0.0, 0.0)
-    kn.add_gradient(wrench, line, found.by_p, found.by_g, found.by_length)
+    kn.add_gradient(wrench, line, corners.by_p, corners.by_g, corners.by_length)
     turn = beyond / radii[number]  # of the corner, from where it leaves the line of action
     along = radii[number] * np.sin(turn) + tips[number] * np.cos(turn)
     distance = radii[number] * (1.0 - np.cos(turn)) + tips[number] * np.sin(turn)
@@ -168,9 +182,9 @@ def test_a_damper_dissipates_takes_hold_with_the_load_and_leaves_the_energy_alon
     rng = np.random.default_rng(2)
     full = GRADUAL * p.pair_law.nominal_force
     for t, q in states(numbers, 200):
-        q[2] *= rng.uniform(0.1, 1.0)
+        q[PHI_P] *= rng.uniform(0.1, 1.0)
         v = rng.normal(size=6) * 0.3
-        v[[2, 5]] /= p.geometry.radius_p
+        v[[PHI_P, PHI_G]] /= p.geometry.radius_p
         still = contact(numbers, t, q)[1]
         contacts = contact(numbers, t, q, v)[1]
         for field in ("elastic_load", "energy"):
@@ -237,9 +251,11 @@ def test_hertz_law_is_the_derivative_of_its_energy_and_lamberts_function(share):
     assert slope == pytest.approx((stiffer - softer) / 2e3 * 2e9, rel=1e-6)
     # The lumped model's own evaluation: load, and its slope as the tangent.
     one = Mesh([0.015], stiffness=k, softening=d, force=nominal, linear_below=1e-3 * nominal)
-    (further,), (here,), tangent = one.loads(pressed + h), one.loads(pressed), one.contacts["tangent"][0]
-    assert here == pytest.approx(load, rel=1e-12)
-    assert tangent == pytest.approx((further - here) / h, rel=1e-5)
+    (further,) = one.loads(pressed + h)
+    (at_approach,) = one.loads(pressed)
+    tangent = one.contacts["tangent"][0]
+    assert at_approach == pytest.approx(load, rel=1e-12)
+    assert tangent == pytest.approx((further - at_approach) / h, rel=1e-5)
     assert stored_energy(1e-9, k, 2e9, law)[0] == pytest.approx(0.0, abs=1e-20)  # no load, no energy
     if share >= 0.3:  # far above the load below which the law is held linear
         w = lambertw(-pressed * np.exp(-1.0 / (k * d)) / (d * nominal), -1).real
@@ -254,7 +270,7 @@ def test_the_stiffness_of_the_table_holds_at_the_mean_load():
     load = pair.operating.pinion_torque / numbers.record.geometry.radius_p
     for _ in range(5):
         (record,) = contact(numbers, 0.85 * numbers.period, q)[1]
-        q[2] = -load / record["stiffness"] / numbers.record.geometry.radius_p
+        q[PHI_P] = -load / record["stiffness"] / numbers.record.geometry.radius_p
     assert record["load"] == pytest.approx(load, rel=1e-6)
 
 

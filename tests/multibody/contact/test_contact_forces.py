@@ -9,9 +9,9 @@ from lumped.model.steady import periodic_solution
 from lumped.path_of_contact.friction import contact_path
 from multibody.contact import kinematics as kn
 from multibody.contact.friction import SurfaceMotion, nominal_friction, signed_friction
-from multibody.contact.kernels import contact_forces
+from multibody.contact.kernels import tooth_forces
 from multibody.contact.machine import machine
-from multibody.contact.records import CONTACTS_SIZE, opened_contacts
+from multibody.contact.records import CONTACTS_SIZE, COORDINATES, PHI_G, PHI_P, RATES, WRENCH, opened_contacts
 from multibody.run.effects import effect_flags
 from multibody.run.model import accelerations, from_lumped_state
 from multibody.run.setup import prepare
@@ -30,16 +30,17 @@ LIKE_TEETH = [name for name in UNLIKE if unlike_pair(name).healthy is unlike_pai
 def forces(numbers, t, q, v, flags=ALL):
     state = np.array([q, v, np.zeros(6)])
     contacts = np.zeros(CONTACTS_SIZE)
-    count = contact_forces(t, state, numbers.packed, flags, contacts)
+    count = tooth_forces(t, state, numbers.packed, flags, contacts)
     assert count >= 0
-    return state[2], opened_contacts(contacts)[:count]
+    return state[WRENCH], opened_contacts(contacts)[:count]
 
 
 def pressed_state(numbers, rng, flank=1.0):
     """Bodies off their places by some 10 um, flanks pressed by some 10 um."""
-    q, v = rng.normal(size=6) * 1e-5, rng.normal(size=6) * 0.01
-    q[5] -= flank * 6e-5 / numbers.record.geometry.radius_g
-    v[[2, 5]] *= 10
+    q = rng.normal(size=6) * 1e-5
+    v = rng.normal(size=6) * 0.01
+    q[PHI_G] -= flank * 6e-5 / numbers.record.geometry.radius_g
+    v[[PHI_P, PHI_G]] *= 10
     return q, v
 
 
@@ -60,8 +61,8 @@ def test_wrench_power_is_what_the_contacts_take(name, flags, rng):
         wrench, c = forces(numbers, t, q, v, flags)
         assert len(c) >= 1
         total = v.copy()
-        total[2] -= p.rolling.omega_p
-        total[5] += p.rolling.omega_g
+        total[PHI_P] -= p.rolling.omega_p
+        total[PHI_G] += p.rolling.omega_g
         taken = c["load"] @ c["approach_rate"] + c["friction_force"] @ c["sliding_velocity"]
         # Powers of single forces are some 20 kW here and cancel to watts.
         assert wrench @ total == pytest.approx(-taken, abs=1e-9 * np.abs(wrench * total).sum())
@@ -78,7 +79,7 @@ def test_pressing_velocity_is_the_rate_of_the_pressed_overlap(flags, rng):
     h = 1e-7
     for t in np.linspace(0.05, 0.3, 4) * numbers.period:
         q, v = pressed_state(numbers, rng)
-        q[[2, 5]] -= 1e-3
+        q[[PHI_P, PHI_G]] -= 1e-3
         _, c = forces(numbers, t, q, v, flags)
         _, after = forces(numbers, t + h, q + h * v, v, flags)
         _, before = forces(numbers, t - h, q - h * v, v, flags)
@@ -90,8 +91,9 @@ def test_pressing_velocity_is_the_rate_of_the_pressed_overlap(flags, rng):
 
 def test_teeth_push_but_do_not_pull(rng):
     numbers = machine(prescribed("larger_gear_drives_contact_lost"))
-    q, v = np.zeros(6), np.zeros(6)
-    q[2] = 2e-5 / numbers.record.geometry.radius_p  # pinion 20 um behind: inside the backlash of 110 um
+    q = np.zeros(6)
+    v = np.zeros(6)
+    q[PHI_P] = 2e-5 / numbers.record.geometry.radius_p  # pinion 20 um behind: inside the backlash of 110 um
     wrench, _ = forces(numbers, 0.3 * numbers.period, q, v)
     np.testing.assert_array_equal(wrench, 0.0)
     wrench, _ = forces(numbers, 0.3 * numbers.period, q, v, effect_flags({"contact_loss": False}))
@@ -184,10 +186,10 @@ def test_jumps_and_kinks_are_found_where_the_lumped_law_has_them():
         ("rack_25_degrees_always_pushing", {"friction__maximum": 0.05}),
         ("contact_ratio_2_3_on_shafts", {}),
     ):
-        at = prescribed(name).with_(**changes)
-        switches = machine(at).switches
-        theirs = lumped.mesh_cycle(at).edges[:-1]
-        np.testing.assert_allclose(switches, theirs / lumped.geometry(at).mesh_period, rtol=0.0, atol=1e-9)
+        pair = prescribed(name).with_(**changes)
+        switches = machine(pair).switches
+        theirs = lumped.mesh_cycle(pair).edges[:-1]
+        np.testing.assert_allclose(switches, theirs / lumped.geometry(pair).mesh_period, rtol=0.0, atol=1e-9)
         compared += switches.size
     assert compared > 10
 
@@ -220,9 +222,9 @@ def test_the_contact_of_a_faster_machine_rolls_and_slides_as_at_that_speed():
     p = numbers.record
     state = np.zeros((3, 6))
     contacts = np.zeros(CONTACTS_SIZE)
-    state[0, 5] = -6e-5 / p.geometry.radius_g  # presses the flanks
-    state[1, [2, 5]] = -0.5 * p.rolling.omega_p, 0.5 * p.rolling.omega_g
-    count = contact_forces(0.3 * numbers.period, state, numbers.packed, flags, contacts)
+    state[COORDINATES, PHI_G] = -6e-5 / p.geometry.radius_g  # presses the flanks
+    state[RATES, [PHI_P, PHI_G]] = -0.5 * p.rolling.omega_p, 0.5 * p.rolling.omega_g
+    count = tooth_forces(0.3 * numbers.period, state, numbers.packed, flags, contacts)
     records = opened_contacts(contacts)[:count]
     expected = lumped.mesh_elements(faster).friction(records["position"])
     nominal = lumped.mesh_elements(pair).friction(records["position"])

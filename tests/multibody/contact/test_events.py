@@ -14,9 +14,9 @@ from multibody.contact.events import (
     event_table,
     time_to_event,
 )
-from multibody.contact.kernels import contact_forces
+from multibody.contact.kernels import tooth_forces
 from multibody.contact.machine import machine
-from multibody.contact.records import CONTACTS_SIZE, opened_contacts
+from multibody.contact.records import CONTACTS_SIZE, PHI_G, PHI_P, opened_contacts
 from multibody.run.effects import effect_flags
 from tests.unlike_pairs import unlike_pair
 
@@ -42,7 +42,7 @@ def contacts(numbers, flags, t, q, v):
     """What jumps with the force: the number of pairs and the sign of each friction coefficient."""
     state = np.array([q, v, np.zeros(6)])
     records = np.zeros(CONTACTS_SIZE)
-    count = contact_forces(t, state, numbers.packed, flags, records)
+    count = tooth_forces(t, state, numbers.packed, flags, records)
     return count, tuple(np.sign(opened_contacts(records)["friction_coefficient"][:count]))
 
 
@@ -63,22 +63,22 @@ def test_the_force_jumps_where_it_was_foreseen_and_not_before(name, effects, rng
         q = rng.normal(size=6) * 1e-5
         v = rng.normal(size=6) * 0.02
         a = rng.normal(size=6) * 200.0
-        q[[2, 5]] = -2e-5 / numbers.base_radii  # pressed by some 40 um
-        v[[2, 5]] = v[[2, 5]] * 10
+        q[[PHI_P, PHI_G]] = -2e-5 / numbers.base_radii  # pressed by some 40 um
+        v[[PHI_P, PHI_G]] = v[[PHI_P, PHI_G]] * 10
         a[[2, 5]] = a[[2, 5]] * 10
         wait, _ = time_to_event(t, q, v, a, numbers.packed, flags, numbers.events, 0.05 * period)
         assert 0.0 <= wait < period
         if wait > 0.04 * period:
             continue  # foreseen roughly; the integrator asks again when it is nearer
 
-        def at(tau, t=t, q=q, v=v, a=a):
+        def force_at(tau, t=t, q=q, v=v, a=a):
             return contacts(numbers, flags, t + tau, q + tau * (v + 0.5 * tau * a), v + tau * a)
 
         hair = 1e-11 * period
-        before, after = at(wait - hair), at(wait + hair)
+        before, after = force_at(wait - hair), force_at(wait + hair)
         assert before != after
         seen.add(after[0] - before[0])
-        assert all(at(tau) == before for tau in np.linspace(0.0, wait - hair, 20))
+        assert all(force_at(tau) == before for tau in np.linspace(0.0, wait - hair, 20))
     assert seen == {-1, 0, 1}  # a pair left, sliding turned, a pair entered
 
 
@@ -97,8 +97,9 @@ def test_corners_touch_and_let_go_where_it_was_foreseen(name, pairs):
     period = numbers.period
     # The gears roll on each other, a little slower than nominal: their approach stays. It is so large that
     # the corner goes fast enough for its damper to let go.
-    q, v = np.zeros(6), np.array([0.0, 0.0, -1.0, 0.0, 0.0, p.geometry.radius_p / p.geometry.radius_g])
-    q[2] = -3e-5 / p.geometry.radius_p
+    q = np.zeros(6)
+    v = np.array([0.0, 0.0, -1.0, 0.0, 0.0, p.geometry.radius_p / p.geometry.radius_g])
+    q[PHI_P] = -3e-5 / p.geometry.radius_p
 
     def around(kind):
         events = numbers.events[numbers.events["kind"] == kind]
@@ -106,7 +107,7 @@ def test_corners_touch_and_let_go_where_it_was_foreseen(name, pairs):
         for tau in (wait - 1e-5 * period, wait + 1e-5 * period):
             records = np.zeros(CONTACTS_SIZE)
             state = np.array([q + tau * v, v, np.zeros(6)])
-            count = contact_forces(tau, state, numbers.packed, flags, records)
+            count = tooth_forces(tau, state, numbers.packed, flags, records)
             touching = opened_contacts(records)[:count]
             yield count, touching["load"].min(), touching["elastic_load"].min()
 

@@ -22,5 +22,5 @@ def test_nominal_friction_is_the_lumped_models(unlike, law):
     p = numbers.record.geometry
     mu = friction_path_function(pair, warn=False)
     xi = np.linspace(p.L_XA, p.L_XD, 23)[1:-1]
-    found = [nominal_friction(numbers.packed, float(one)) for one in xi]
-    np.testing.assert_allclose(found, mu(xi), rtol=0.0, atol=FIT)
+    friction = [nominal_friction(numbers.packed, float(one)) for one in xi]
+    np.testing.assert_allclose(friction, mu(xi), rtol=0.0, atol=FIT)

@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 from multibody.contact import kinematics as kin
-from multibody.contact.records import MAX_PAIRS
+from multibody.contact.records import MAX_PAIRS, PHI_G, PHI_P
 
 FLANKS = [kin.DRIVE, kin.COAST]
 
@@ -19,7 +19,7 @@ def random_pose(teeth, rng, flank):
     pose = np.array([*rng.uniform(-1, 1, 2), rng.uniform(-20, 20), 0, 0, rng.uniform(-20, 20)])
     pose[3:5] = pose[:2] + a * np.array([math.cos(direction), math.sin(direction)])
     delta = overlap(teeth, pose, flank)
-    pose[5] += flank * (delta - rng.uniform(1e-6, 5e-5)) / teeth.radius_g
+    pose[PHI_G] += flank * (delta - rng.uniform(1e-6, 5e-5)) / teeth.radius_g
     return pose
 
 
@@ -37,24 +37,26 @@ def line_of(teeth, pose, flank):
 def phase(teeth, pose, flank):
     """Line of action, place of the first pinion flank on it, overlap."""
     line = line_of_action(teeth, pose, flank)
-    radii, (chi_p, chi_g) = (teeth.radius_p, teeth.radius_g), teeth.chi[flank]
+    _, _, grown, psi = line
+    radii = (teeth.radius_p, teeth.radius_g)
+    chi_p, chi_g = teeth.chi[flank]
     apart = -flank * (radii[0] * chi_p + radii[1] * (chi_g - math.pi))
     side = kin.Side(flank, *radii, teeth.pitch, chi_p, apart)
-    turn = kin.Turn(psi=line[3], grown=line[2], phi_p=pose[2], phi_g=pose[5], rolled=0.0)
+    turn = kin.Turn(psi=psi, grown=grown, phi_p=pose[PHI_P], phi_g=pose[PHI_G], rolled=0.0)
     return line, *kin.mesh_phase(side, turn)
 
 
 def overlap(teeth, pose, flank):
-    return phase(teeth, pose, flank)[2]
+    _, _, delta = phase(teeth, pose, flank)
+    return delta
 
 
 def contact(teeth, pose, flank):
     """(line, arms of every pair, overlap) in one pose."""
     line, rho, delta = phase(teeth, pose, flank)
+    _, _, grown, _ = line
     arms = np.zeros((MAX_PAIRS, 2))
-    count = kin.pairs_in_contact(
-        rho, delta, line[2], teeth.pitch, (0.0, teeth.tip_p), (0.0, teeth.tip_g), arms
-    )
+    count = kin.pairs_in_contact(rho, delta, grown, teeth.pitch, (0.0, teeth.tip_p), (0.0, teeth.tip_g), arms)
     return line, arms[:count] - 0.5 * delta, delta
 
 
@@ -117,7 +119,7 @@ def test_drawn_flanks_touch_where_the_formulas_say(teeth, rng, flank):
     """With zero overlap, the two drawn involutes have exactly one common point, the contact point."""
     for _ in range(3):
         pose = random_pose(teeth, rng, flank)
-        pose[5] += flank * overlap(teeth, pose, flank) / teeth.radius_g
+        pose[PHI_G] += flank * overlap(teeth, pose, flank) / teeth.radius_g
         point, _, _ = contact_point(teeth, pose, flank)
         _, arms, delta = contact(teeth, pose, flank)
         assert abs(delta) < 1e-15
@@ -125,8 +127,8 @@ def test_drawn_flanks_touch_where_the_formulas_say(teeth, rng, flank):
         def drawn(rho, teeth=teeth, pose=pose, arms=arms):
             # The pinion flank in contact is the one whose string is arms[0, 0] long on the line of action.
             _, _, _, psi = line_of_action(teeth, pose, flank)
-            chi = psi - pose[2] - flank * arms[0, 0] / teeth.radius_p
-            return involute_flank(pose[:2], pose[2], teeth.radius_p, chi, flank, np.atleast_1d(rho))
+            chi = psi - pose[PHI_P] - flank * arms[0, 0] / teeth.radius_p
+            return involute_flank(pose[:2], pose[PHI_P], teeth.radius_p, chi, flank, np.atleast_1d(rho))
 
         def gap(rho, pose=pose):
             # Distance of a pinion flank point from the gear flank, measured as string length on the gear
@@ -134,10 +136,11 @@ def test_drawn_flanks_touch_where_the_formulas_say(teeth, rng, flank):
             q = drawn(rho)[:, 0] - pose[3:5]
             length = math.sqrt(q @ q - teeth.radius_g**2)
             direction = math.atan2(q[1], q[0]) + flank * (-math.pi / 2 + math.atan2(length, teeth.radius_g))
-            unwound = flank * teeth.radius_g * (direction - pose[5] - teeth.chi[flank][1])
+            unwound = flank * teeth.radius_g * (direction - pose[PHI_G] - teeth.chi[flank][1])
             return kin.wrap(length - unwound, teeth.pitch)
 
-        low, high = max(1e-4, arms[0, 0] - 2e-3), arms[0, 0] + 2e-3
+        low = max(1e-4, arms[0, 0] - 2e-3)
+        high = arms[0, 0] + 2e-3
         best = minimize_scalar(gap, bounds=(low, high), method="bounded", options={"xatol": 1e-9})
         assert best.fun == pytest.approx(0.0, abs=1e-13)
         # The gap is quadratic about the contact, so its minimiser is known to the root of the rounding.
@@ -145,4 +148,5 @@ def test_drawn_flanks_touch_where_the_formulas_say(teeth, rng, flank):
 
 
 def test_overlapping_base_circles_give_nan():
-    assert math.isnan(kin.line_of_action(0.08, -0.0835, 0.0, 0.0835, kin.DRIVE)[2])
+    _, _, grown, _ = kin.line_of_action(0.08, -0.0835, 0.0, 0.0835, kin.DRIVE)
+    assert math.isnan(grown)

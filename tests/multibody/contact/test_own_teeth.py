@@ -8,9 +8,9 @@ import lumped
 import multibody
 from lumped.model.periodic_system import LTVSystem
 from lumped.model.tooth_laws import ToothLaws
-from multibody.contact.kernels import contact_forces
+from multibody.contact.kernels import tooth_forces
 from multibody.contact.machine import machine
-from multibody.contact.records import CONTACTS_SIZE, opened_contacts, opened_records
+from multibody.contact.records import CONTACTS_SIZE, COORDINATES, PHI_P, opened_contacts, opened_records
 from multibody.contact.tooth_pairs import OwnTeeth, TurnedArcs, teeth_of_pair, tooth_pair
 from multibody.run.effects import effect_flags
 from tests.unlike_pairs import unlike_pair
@@ -54,40 +54,40 @@ def test_first_law_holds_with_own_gaps_eccentric_base_circles_cracks_and_ripples
         assert work == pytest.approx(torque * np.diff(angles)[0] + ripple, rel=1e-8), name
 
 
-@pytest.mark.parametrize("which", [0, 1])
-def test_faults_are_those_of_the_lumped_model_by_the_actual_lengths(pair, which):
+@pytest.mark.parametrize("gear_index", [0, 1])
+def test_faults_are_those_of_the_lumped_model_by_the_actual_lengths(pair, gear_index):
     # The lumped model has the arm from the point of contact on the tooth, this one from the line of action.
     pair = pair.with_({"mesh.backlash": 0, "mesh.first_teeth": [1, 5]})
     g = pair.geometry
-    flank = pair.flank(which)
+    flank = pair.flank(gear_index)
     low, high, end = np.degrees(flank.start + np.array([2e-3, 4e-3, 6e-3])) / flank.wheel.tooth.base_radius
-    tooth = (3, 7)[which]
+    tooth = (3, 7)[gear_index]
     spall = {"kind": "spall", "tooth": tooth, "start_roll_angle": low, "end_roll_angle": high, "width": 3}
     pit = {**spall, "width": None, "pit_depth": 7}
     crack = {**CRACK, "tooth": tooth}
     chip = {"kind": "chip", "tooth": tooth, "roll_angle": end}
     xi = np.linspace(g.L_XA, g.L_XD, 12)[1:-1]
     for fault in (crack, spall, pit, chip):
-        own = pair.with_({("pinion.faults", "gear.faults")[which]: [fault]})
-        laws = ToothLaws(own)
+        damaged = pair.with_({("pinion.faults", "gear.faults")[gear_index]: [fault]})
+        laws = ToothLaws(damaged)
         sound, faulty = (laws.of_kind(kind, xi) for kind in (0, 1))
         softer = 1.0 / faulty["stiffness"] - 1.0 / sound["stiffness"]
-        numbers = machine(own)
+        numbers = machine(damaged)
         record = numbers.record
         teeth = OwnTeeth(*(opened_records(numbers.packed, name) for name in ("teeth_p", "teeth_g", "faults")))
 
-        def found(x, record=record, teeth=teeth, way=2 * g.base_pitch):
+        def fault_at(x, record=record, teeth=teeth, offset=2 * g.base_pitch):
             """The teeth in contact at x; two pairs later than pair 0."""
-            arcs = TurnedArcs(x + way, g.L_XY - x - way)
+            arcs = TurnedArcs(x + offset, g.L_XY - x - offset)
             return tooth_pair(record, teeth, teeth_of_pair(record, teeth, arcs, x, g.L_XY - x), x)
 
-        pairs = [found(x) for x in xi]
+        pairs = [fault_at(x) for x in xi]
         scale = max(softer.max(), 1e-12)
         assert [o.compliance for o in pairs] == pytest.approx(softer, abs=1e-9 * scale)
         assert [o.error for o in pairs] == pytest.approx(faulty["gap"] - sound["gap"], abs=1e-15)
         assert (g.L_XY - pairs[0].tip_g, pairs[0].tip_p) == pytest.approx(laws.ends(1)[:2], rel=1e-12)
         if fault is crack:
-            slopes = [(found(x + 1e-8).compliance - found(x - 1e-8).compliance) / 2e-8 for x in xi]
+            slopes = [(fault_at(x + 1e-8).compliance - fault_at(x - 1e-8).compliance) / 2e-8 for x in xi]
             assert [o.compliance_slope for o in pairs] == pytest.approx(slopes, rel=1e-5)
 
 
@@ -98,6 +98,8 @@ def test_what_it_does_not_have_is_refused():
 
 #: A displacement of 1 um along the reference circle of a 25-degree rack: so much along the line of action.
 MOVED = 1e-6 * np.cos(np.radians(25.0))
+#: The tooth that is displaced, counted from 1.
+DISPLACED_TOOTH = 3
 
 
 @pytest.mark.parametrize(("gear", "lag"), [("pinion", MOVED), ("gear", -MOVED)])
@@ -111,10 +113,10 @@ def test_a_displaced_tooth_that_carries_alone_makes_the_gear_lag_or_lead(gear, l
     pair = unlike_pair("rack_25_degrees_always_pushing")
     flags = effect_flags(None, "loaded")
 
-    def approach(moved, cycle):
+    def approach(displacement, cycle):
         """How far the pinion is turned against its running sense, at rest, until the teeth carry 5 kN [m]."""
         index = [0.0] * getattr(pair, gear).teeth
-        index[2] = moved
+        index[DISPLACED_TOOTH - 1] = displacement
         displaced = pair.with_({f"{gear}.deviations": {"index": index, "first_order": "steps"}})
         numbers = machine(displaced, flags)
         contacts = np.zeros(CONTACTS_SIZE)
@@ -122,10 +124,10 @@ def test_a_displaced_tooth_that_carries_alone_makes_the_gear_lag_or_lead(gear, l
 
         def load(delta):
             state = np.zeros((3, 6))
-            state[0, 2] = -delta / radius
+            state[COORDINATES, PHI_P] = -delta / radius
             # Tooth 3 comes to A after two mesh cycles; from 0.7 to 0.95 of a cycle one pair carries alone.
             t = (cycle + 0.8) * numbers.period
-            count = contact_forces(t, state, numbers.packed, flags, contacts)
+            count = tooth_forces(t, state, numbers.packed, flags, contacts)
             assert np.count_nonzero(opened_contacts(contacts)["load"][:count]) <= 1
             return opened_contacts(contacts)["load"][:count].sum() - 5e3
 

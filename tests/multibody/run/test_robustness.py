@@ -50,13 +50,13 @@ def test_ctrl_c_stops_a_run():
         signal.signal(signal.SIGINT, before)
 
 
-@pytest.mark.parametrize("which", [1, 2])
-def test_coordinates_or_rates_alone_that_are_not_finite_are_seen(monkeypatch, which):
+@pytest.mark.parametrize("array_index", [1, 2])
+def test_coordinates_or_rates_alone_that_are_not_finite_are_seen(monkeypatch, array_index):
     stored = multibody.run.integration.stored
 
     def spoilt(model):
         arrays = [np.array(one) for one in stored(model)]
-        arrays[which][-1, 0] = np.nan
+        arrays[array_index][-1, 0] = np.nan
         return tuple(arrays)
 
     monkeypatch.setattr("multibody.run.integration.stored", spoilt)

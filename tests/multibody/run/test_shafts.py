@@ -12,7 +12,7 @@ from lumped.errors import ParameterError
 from lumped.stiffness.foundation import body_twist
 from multibody.contact import kinematics as kn
 from multibody.contact.kernels import tooth_forces
-from multibody.contact.records import CONTACTS_SIZE, opened
+from multibody.contact.records import CONTACTS_SIZE, WRENCH, X_G, X_P, Y_G, Y_P, opened
 from multibody.run.linear_motion import state_scale
 from multibody.run.setup import prepare
 from multibody.run.simulation import record
@@ -64,11 +64,12 @@ def test_exudyn_solves_the_equations_of_the_machine(setup, run):
     load = -np.array([m.torque_pinion, m.torque_gear]) @ train.torques
 
     def rates(t, state):
-        q, v = state[:n], state[n:]
+        q = state[:n]
+        v = state[n:]
         gears[:2] = q[:6], v[:6]
         tooth_forces(t, gears, packed, kn.LINEAR, contacts)
         force = load - train.stiffness @ q - train.damping @ v
-        force[:6] += gears[2]
+        force[:6] += gears[WRENCH]
         return np.concatenate([v, np.linalg.solve(train.mass, force)])
 
     state = np.concatenate([setup.q, setup.v])
@@ -112,7 +113,7 @@ def test_gears_are_discs_on_shafts_that_turn_against_each_other(setup):
     train = setup.machine.train
     m = setup.machine
     turning = train.damping - train.damping.T
-    assert turning[0, 1] < 0.0 < turning[3, 4]
+    assert turning[X_P, Y_P] < 0.0 < turning[X_G, Y_G]
     body = disc(PAIR, 1, m.mass[1], m.inertia[1])
     width = PAIR.gear.face_width
     radius = PAIR.geometry.reference_radius_gear

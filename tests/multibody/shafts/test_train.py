@@ -30,9 +30,9 @@ def test_a_light_inertia_does_not_stall():
     )
     bearings = tuple(
         ShaftBearing.model_construct(
-            position=at, loa_stiffness=3e8, oloa_stiffness=3e8, loa_damping=0.0, oloa_damping=0.0,
+            position=position, loa_stiffness=3e8, oloa_stiffness=3e8, loa_damping=0.0, oloa_damping=0.0,
             tilt_stiffness=0.0,
-        ) for at in (0.0, 0.2)
+        ) for position in (0.0, 0.2)
     )  # fmt: skip
     segment = ShaftSegment.model_construct(length=0.2, diameter=0.03, bore=0.0)
     shaft = Shaft.model_construct(
@@ -43,7 +43,8 @@ def test_a_light_inertia_does_not_stall():
     options = {"speed": 0.0, "damping_ratio": 0.0, "highest": 1e5}
     one, two = (reduced_shaft(shaft, disc, motor, **options) for motor in (light, heavy))
     alone = reduced_shaft(shaft, disc, None, **options)
-    assert one.mass[2, 2] == pytest.approx(alone.mass[2, 2] + 1e-12, rel=1e-12)
-    assert two.mass[2, 2] == pytest.approx(alone.mass[2, 2] + 1e-3, rel=1e-9)
-    assert one.torque[2] == pytest.approx(1.0, rel=1e-9)
+    rotation = 2  # coordinate, after x and y of the gear
+    assert one.mass[rotation, rotation] == pytest.approx(alone.mass[rotation, rotation] + 1e-12, rel=1e-12)
+    assert two.mass[rotation, rotation] == pytest.approx(alone.mass[rotation, rotation] + 1e-3, rel=1e-9)
+    assert one.torque[rotation] == pytest.approx(1.0, rel=1e-9)
     assert two.size == alone.size + 1 == one.size + 1

@@ -51,8 +51,8 @@ def test_changes_alone_and_without_are_told_apart(monkeypatch):
             change = total if cause == "all" else sum(MADE_UP[n] for n in group & (every | {"friction_load"}))
             without = total - change if cause in ("all", "sliding_velocity", "path_work") else np.nan
             expected = np.abs([change, without]) / 10.0
-            at = shares.sel(cause=cause)
-            np.testing.assert_allclose([at["alone"], at["without"]], expected, err_msg=cause)
+            share = shares.sel(cause=cause)
+            np.testing.assert_allclose([share["alone"], share["without"]], expected, err_msg=cause)
         assert shares.attrs["largest"] == "contact" if form == "loaded" else "sliding_velocity"
 
 

@@ -129,3 +129,19 @@ def test_rates_and_accelerations_are_those_of_the_motion(pair):
         (dataclasses.replace(channel, values=rate[inside]),),
     )  # fmt: skip
     assert Problem.of(pair, curves, one.motion).misfit.value < 0.01
+
+
+def test_what_repeats_with_every_cycle_is_no_noise(pair):
+    # A force with jumps has orders above the compared ones in every cycle.
+    larger = problem(
+        pair,
+        quantities=("mesh_force",),
+        per_cycle=64.0,
+        change=lambda name, values, time: values.mean() + 1.06 * (values - values.mean()),
+    )
+    assert larger.misfit.channels[0].motion == pytest.approx(0.06 / 1.06, rel=0.1)
+    noisy = problem(pair, quantities=("mesh_force",), noise=0.05, cycles=12)
+    one = noisy.theirs[0]
+    size = 0.05 * np.ptp(sampled(pair, ("mesh_force",)).channels[0].values)
+    expected = size * np.sqrt(4.0 * one.orders.orders.size / noisy.settled.used.sum())
+    assert 0.5 * expected < one.noise < 1.2 * expected  # by two halves: 12 complex differences

@@ -121,14 +121,15 @@ def test_crosscheck_exits_by_its_verdict(check, monkeypatch, tmp_path, verdict, 
 
     judged = Judged(**vars(check))
     Judged.verdict = property(lambda self: verdict)
-    given = {}
+    crosscheck_options = {}
     monkeypatch.setattr(
-        "validation.cross_check.comparison.crosscheck", lambda *_, **options: given.update(options) or judged
+        "validation.cross_check.comparison.crosscheck",
+        lambda *_, **options: crosscheck_options.update(options) or judged,
     )
     path = tmp_path / "agreement.png"
     result = run("crosscheck", "-o", path, "--limit", "2%")
     assert result.exit_code == code
-    assert given["limit"] == pytest.approx(0.02)
+    assert crosscheck_options["limit"] == pytest.approx(0.02)
     assert f"{verdict}: {verdict.text}" in result.stdout
     assert path.read_bytes().startswith(b"\x89PNG")
     assert json.loads(run("crosscheck", "--json").stdout)["verdict"] == verdict.word
@@ -142,74 +143,83 @@ def test_stability_exits_by_the_operating_point():
 
 
 @pytest.fixture
-def asked(monkeypatch):
+def report_options(monkeypatch):
     """Arguments that reach the report, which is not computed; what it finds can be set."""
-    told = {"failed": (), "findings": frozenset(), "comparison": None}
+    options_of_report = {"failed": (), "findings": frozenset(), "comparison": None}
 
     def write(pair, out, **options):
-        told.update(options, pair=pair, out=out)
+        options_of_report.update(options, pair=pair, out=out)
         first = PageOne("a pair", VERDICT.UNCERTAIN, "It compares.", "", (), (), (), "", "", (), ())
-        return Report(out, first, told["failed"], told["findings"], 1.0, told["comparison"])
+        return Report(
+            out,
+            first,
+            options_of_report["failed"],
+            options_of_report["findings"],
+            1.0,
+            options_of_report["comparison"],
+        )
 
     monkeypatch.setattr("validation.reporting.report", write)
-    return told
+    return options_of_report
 
 
-def test_options_reach_the_report(asked, tmp_path, shafted_file):
+def test_options_reach_the_report(report_options, tmp_path, shafted_file):
     out = tmp_path / "out"
     old = tmp_path / "old"
     options = ("--quick", "--speed", "3000 rpm", "--law", "coulomb", "--tolerance", "0.01")
     result = run("report", "fzg_c", "-o", out, *options, "--compare", old)
     assert result.exit_code == 0, result.stderr
     assert "It compares." in result.stdout
-    assert asked["pair"].friction.law == "coulomb"
-    assert asked["pair"].operating.pinion_speed == pytest.approx(100 * math.pi)
+    assert report_options["pair"].friction.law == "coulomb"
+    assert report_options["pair"].operating.pinion_speed == pytest.approx(100 * math.pi)
     expected = {"out": out, "quick": True, "compare": old, "tolerance": 0.01, "force": False, "name": "fzg_c"}
-    assert asked | expected == asked
+    assert report_options | expected == report_options
     for supports in ((), ("--supports", "springs")):
         assert run("report", shafted_file, "-o", out, *supports).exit_code == 0
-        assert asked["supports"] == (supports[1] if supports else None)
+        assert report_options["supports"] == (supports[1] if supports else None)
 
 
 @pytest.mark.parametrize("bad", [(), ("conservation: efficiency, lumped",)])
-def test_a_report_with_a_failing_check_exits_1_and_names_it(asked, tmp_path, bad):
-    asked["failed"] = bad
+def test_a_report_with_a_failing_check_exits_1_and_names_it(report_options, tmp_path, bad):
+    report_options["failed"] = bad
     result = run("report", "-o", tmp_path / "out")
     assert result.exit_code == (1 if bad else 0)
     assert ("fails: conservation: efficiency" in result.stdout) == bool(bad)
 
 
-@pytest.mark.parametrize(("require", "found", "code"), [
+@pytest.mark.parametrize(("require", "findings", "code"), [
     ((), {"contact", "holds"}, 0),
     (("contact",), {"contact", "holds"}, 4),
     (("stable",), {"contact"}, 0),
     (("stable", "holds"), {"holds"}, 4),
     (("contact",), set(), 0),
 ])  # fmt: skip
-def test_findings_about_the_machine_exit_4_where_a_gate_forbids_them(asked, tmp_path, require, found, code):
-    asked["findings"] = frozenset(found)
+def test_findings_about_the_machine_exit_4_where_a_gate_forbids_them(
+    report_options, tmp_path, require, findings, code
+):
+    report_options["findings"] = frozenset(findings)
     result = run("report", "-o", tmp_path / "out", *(word for one in require for word in ("--require", one)))
     assert result.exit_code == code
     assert "holds, stable, contact, record" in refused("report", "-o", tmp_path / "out", "--require", "quiet")
 
 
-def test_a_record_that_does_not_confirm_exits_4_where_it_is_required(asked, tmp_path):
-    asked["findings"] = frozenset({"record"})
+def test_a_record_that_does_not_confirm_exits_4_where_it_is_required(report_options, tmp_path):
+    report_options["findings"] = frozenset({"record"})
     options = ("report", "-o", tmp_path / "out", "--record", tmp_path / "run12.toml")
     assert run(*options).exit_code == 0
     result = run(*options, "--require", "record")
     assert result.exit_code == 4
     assert "--require is not met: record" in result.stdout
-    asked["findings"] = frozenset()
+    report_options["findings"] = frozenset()
     assert run(*options, "--require", "record").exit_code == 0
     assert "Add --record" in refused("report", "-o", tmp_path / "out", "--require", "record")
 
 
 @pytest.mark.parametrize("fails", [False, True])
-def test_a_change_past_its_tolerance_exits_1(asked, tmp_path, fails):
+def test_a_change_past_its_tolerance_exits_1(report_options, tmp_path, fails):
     change = Change("response/motion/dte", "1", "2", 0.5, fails)
     inputs = Change("parameters/mesh/damping_ratio", "0.05", "0.06", 0.0, False)
-    asked["comparison"] = Comparison("old", 7, (change, inputs))
+    report_options["comparison"] = Comparison("old", 7, (change, inputs))
     result = run("report", "-o", tmp_path / "out", "--compare", tmp_path / "old")
     assert result.exit_code == int(fails)
     assert f"2 changed, {int(fails)} past tolerance" in result.stdout
@@ -270,5 +280,5 @@ def test_samples_end_with_the_time_and_a_number_that_is_asked_for_does_not(tmp_p
     arguments = "compare", path, "--variant", "torque=90"
     result = run(*arguments, "--seconds", "1e-9")
     assert "32 of 128 possible machines, seed 1; the time of 1e-09 s was used up" in result.stdout
-    found = json.loads(run(*arguments, "--seconds", "1e-9", "--json").stdout)
-    assert (found["taken"], found["asked"], found["samples"]) == (32, 128, 32)
+    summary = json.loads(run(*arguments, "--seconds", "1e-9", "--json").stdout)
+    assert (summary["taken"], summary["asked"], summary["samples"]) == (32, 128, 32)

@@ -47,13 +47,13 @@ def test_a_second_process_compiles_while_the_command_runs(
 
 
 def test_what_is_compiled_is_told_and_the_fraction_stays() -> None:
-    told: list[tuple[float, str]] = []
-    listener = kernels._Listener(lambda fraction, stage="", /: told.append((fraction, stage)))
+    announced: list[tuple[float, str]] = []
+    listener = kernels._Listener(lambda fraction, stage="", /: announced.append((fraction, stage)))
     listener.tell(0.3, "motion")
     for start in (True, True, False, False):
         listener.notify(SimpleNamespace(is_start=start, is_end=not start))
-    assert {fraction for fraction, _ in told} == {0.3}
-    assert told[-1][1] == "compiling, once for this machine, for a minute: 2 of about 150 functions"
+    assert {fraction for fraction, _ in announced} == {0.3}
+    assert announced[-1][1] == "compiling, once for this machine, for a minute: 2 of about 150 functions"
 
 
 def test_the_second_process_compiles_what_charts_and_runs_of_any_pair_take() -> None:

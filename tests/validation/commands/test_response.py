@@ -29,39 +29,39 @@ def branches():
 def test_the_command_prints_the_jump_to_the_beats(branches, monkeypatch):
     """On running up the pair jumps at the fold to beats; speeds without a stable motion are named."""
 
-    def known(pair, speeds, periods, *, seeds, back_side, seconds, progress):
+    def branches_of_fixture(pair, speeds, periods, *, seeds, back_side, seconds, progress):
         assert pair == branches.pair
         assert seconds is None
         assert (speeds, [*periods], seeds, back_side) == (None, [1], 12, False)
         return branches
 
-    monkeypatch.setattr(floquet, "response_branches", known)
+    monkeypatch.setattr(floquet, "response_branches", branches_of_fixture)
     done = run("response", *PAIR, "--periods", 1, "--seeds", 12, "--json")
     assert done.exit_code == 0, done.output
-    found = json.loads(done.stdout)
-    (fold,) = [b for b in found["bifurcations"] if b["kind"] == "fold"]
-    (jump,) = [j for j in found["jumps"] if j["rising"]]
+    response = json.loads(done.stdout)
+    (fold,) = [b for b in response["bifurcations"] if b["kind"] == "fold"]
+    (jump,) = [j for j in response["jumps"] if j["rising"]]
     assert jump["speed_rpm"] == pytest.approx(fold["speed_rpm"])
     assert jump["after"] == "beats"
     assert jump["dte_rms_after"] > 1.5 * jump["dte_rms"]
-    ((low, _),) = found["gaps"]
+    ((low, _),) = response["gaps"]
     assert low == pytest.approx(fold["speed_rpm"])
-    assert {one["kind"] for one in found["attractors"] if one["high_rpm"] == 14000.0} >= {"beats"}
+    assert {one["kind"] for one in response["attractors"] if one["high_rpm"] == 14000.0} >= {"beats"}
 
 
 def test_the_figure_shows_branches_jumps_and_the_operating_range(branches):
-    found = branches
-    figure = response_figure(found.dataset)
+    response = branches
+    figure = response_figure(response.dataset)
     top, bottom = figure.axes
     stable = [line for line in top.lines if line.get_linestyle() == "-"]
     assert len(stable) >= 2
     assert len(top.lines) > len(stable)
     (arrow,) = [text for text in top.texts if text.arrow_patch is not None]
-    (jump,) = found.jumps
+    (jump,) = response.jumps
     assert arrow.xy == pytest.approx((jump.speed_rpm, 1e6 * jump.dte_rms_after))
     assert top.get_xlim() == pytest.approx((12000.0, 14000.0))
     assert len(bottom.lines) > 2
-    assert len(plot(found.dataset).axes) == 2
+    assert len(plot(response.dataset).axes) == 2
 
 
 MAPPED = ["nasa_28_28", "--range", "12900..15500", *PAIR[3:]]
@@ -73,13 +73,13 @@ def test_damping_removes_the_jump_at_the_cusp(tmp_path):
     axis = ["--map", "damping_ratio=0.1:0.11:2", "--set", "mesh.damping_ratio=0.1"]
     done = run("response", *MAPPED, *axis, "--speeds", 60, "--json", "-o", data)
     assert done.exit_code == 0, done.output
-    found = json.loads(done.stdout)
-    assert [(j["damping_ratio"], j["rising"]) for j in found["jumps"]] == [(0.1, False), (0.1, True)]
-    (removed,) = found["removed_by"]
+    response = json.loads(done.stdout)
+    assert [(j["damping_ratio"], j["rising"]) for j in response["jumps"]] == [(0.1, False), (0.1, True)]
+    (removed,) = response["removed_by"]
     assert removed["value"] == pytest.approx(0.1055, abs=2e-4)
     assert removed["error"] < 2e-4
     result = xr.open_dataset(data)
-    between = [j["speed_rpm"] for j in found["jumps"]]
+    between = [j["speed_rpm"] for j in response["jumps"]]
     row = result.sel(damping_ratio=0.1)
     several = row["speed_rpm"].where(row["motions"] > 1, drop=True)
     assert between[0] < several.min()

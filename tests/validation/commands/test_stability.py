@@ -66,20 +66,20 @@ def test_chart_and_traced_boundaries_are_in_one_file(tmp_path):
     axes = (*SPEEDS, "--axis", "damping_ratio=0:0.04:5")
     result = run(*TONGUE, *axes, "--tongues", "-o", path, "-o", picture)
     assert result.exit_code == 0, result.stderr
-    found = opened(path)
-    assert list(found["label"].to_numpy()) == ["2w3/2"]
+    chart = opened(path)
+    assert list(chart["label"].to_numpy()) == ["2w3/2"]
     # 2.7 %, measured when the pair was chosen.
-    assert float(found["critical_damping"][0]) == pytest.approx(0.027, abs=1e-3)
-    assert f"{float(found['critical_damping'][0]):.6f}" in result.stdout
+    assert float(chart["critical_damping"][0]) == pytest.approx(0.027, abs=1e-3)
+    assert f"{float(chart['critical_damping'][0]):.6f}" in result.stdout
     # The chart and the traced edges say the same at every node.
-    tongue = found.isel(tongue=0)
-    for i, damping in enumerate(found["damping_ratio"].to_numpy()):
+    tongue = chart.isel(tongue=0)
+    for i, damping in enumerate(chart["damping_ratio"].to_numpy()):
         edges = [
             np.interp(damping, tongue["tongue_damping"], tongue[e]) for e in ("tongue_lower", "tongue_upper")
         ]
-        inside = (found["speed_rpm"] > edges[0]) & (found["speed_rpm"] < edges[1])
+        inside = (chart["speed_rpm"] > edges[0]) & (chart["speed_rpm"] < edges[1])
         inside &= damping < float(tongue["critical_damping"])
-        assert np.array_equal(inside, found["verdict"].isel(damping_ratio=i) == -1)
+        assert np.array_equal(inside, chart["verdict"].isel(damping_ratio=i) == -1)
     assert picture.read_bytes().startswith(b"%PDF")
 
 

@@ -122,7 +122,7 @@ def folder(tmp_path_factory):
     """Folder with the files that the mistakes name."""
     made = tmp_path_factory.mktemp("mistakes")
     pair = lumped.load_gear_pair("nasa_28_28").to_toml()
-    own = pair.replace("teeth = 28", "teeth = 19", 1).replace("teeth = 28", "teeth = 41", 1)
+    other_teeth = pair.replace("teeth = 28", "teeth = 19", 1).replace("teeth = 28", "teeth = 41", 1)
     for name, text in {
         "pair": pair,
         "study": STUDY,
@@ -133,7 +133,7 @@ def folder(tmp_path_factory):
         "bare_unit": pair.replace("module = 3.175", "module = 3.175 mm"),
         "output": STUDY.replace("operating.torque", "operating.pinion_torque").replace("_radius", "_radus"),
         "missing": pair.replace("teeth = 28\n", "", 1),
-        "own": own.replace("module = 3.175", "module = 2.5"),
+        "own": other_teeth.replace("module = 3.175", "module = 2.5"),
     }.items():
         (made / f"{name}.toml").write_text(text, encoding="utf-8")
     return made
@@ -146,10 +146,10 @@ def test_a_mistake_is_answered_in_its_own_words(folder, monkeypatch, typed, answ
     terminal = {"COLUMNS": "400", "TERMINAL_WIDTH": "400", "NO_COLOR": "1"}
     result = CliRunner().invoke(app, shlex.split(typed), env=terminal)
     assert (result.exit_code, result.stdout) == (2, "")
-    said = " ".join(result.stderr.replace("│", " ").split())
+    message = " ".join(result.stderr.replace("│", " ").split())
     first, _, last = answer.partition(" ... ")
     start = "error:" if first.startswith("error:") else first.split()[0]
-    said = said[said.index(start) :].rstrip(" ╰─╯")
-    assert said.startswith(first)
-    assert said.endswith(last)
+    message = message[message.index(start) :].rstrip(" ╰─╯")
+    assert message.startswith(first)
+    assert message.endswith(last)
     assert sorted(path.name for path in folder.iterdir()) == before

@@ -8,6 +8,7 @@ import lumped
 import multibody
 from floquet.gear.unilateral import unilateral_system
 from lumped import ParameterError
+from lumped.model.equations import X_P
 from tests.unlike_pairs import UNLIKE, unlike_pair
 from validation.cross_check.comparison import crosscheck
 from validation.cross_check.verdict import Verdict
@@ -90,12 +91,12 @@ def test_back_sides_strike_as_in_the_multibody_model(name):
     backlash = pair.geometry.normal_backlash
     period = pair.geometry.mesh_period
     start = np.zeros(12)
-    start[2] = 3.0 * backlash  # the pinion presses deep and is thrown onto the back side
+    start[X_P] = 3.0 * backlash  # the pinion presses deep and is thrown onto the back side
     run = multibody.simulate(
         pair, 3, initial=start, effects=["contact_loss"], rtol=1e-11, samples_per_cycle=64
     )
     state = np.zeros(10)
-    state[1] = start[2]
+    state[1] = start[X_P]
     lumped_run = unilateral_system(pair, form="back_side").run(
         state, period, 3, run.attrs["brake_torque"], samples=np.arange(64) / 64
     )

@@ -18,10 +18,10 @@ from validation.cross_check.words import NAMES, cause_of_difference, failed_chec
 from validation.exchange import new_pair
 
 
-def test_progress_goes_on_while_the_variant_is_checked(check, told):
-    assert told == sorted(told)
-    assert told[-1] == 1.0
-    assert len({fraction for fraction in told if fraction > 0.75}) >= 6
+def test_progress_goes_on_while_the_variant_is_checked(check, fractions):
+    assert fractions == sorted(fractions)
+    assert fractions[-1] == 1.0
+    assert len({fraction for fraction in fractions if fraction > 0.75}) >= 6
 
 
 def test_the_exact_model_is_compared_in_a_periodic_motion_of_its_own(check):
@@ -139,7 +139,7 @@ def test_a_tighter_limit_turns_the_verdict(pair, check):
 
 
 @pytest.mark.parametrize(
-    ("given", "quantity", "words", "left"),
+    ("arguments", "quantity", "words", "share_left"),
     [
         # Slow and light: ten times the inertia of both gears makes a ninth of the difference.
         (("32/83", 1, 11.6, 146, 8.11), "dte", "the free shafts turn to and fro by 0.92 %", 0.01),
@@ -149,17 +149,18 @@ def test_a_tighter_limit_turns_the_verdict(pair, check):
         (("31/43", 1.25, 9.12, 5230, 46), "friction_force", "friction follows the actual sliding", 0.03),
     ],
 )
-def test_the_effect_that_is_named_takes_the_difference_with_it(given, quantity, words, left):
+def test_the_effect_that_is_named_takes_the_difference_with_it(arguments, quantity, words, share_left):
     settings = {"cycles": 6, "samples_per_cycle": 128, "fidelities": ("exact",), "variant": False}
     of_springs = {"mesh.stiffness.model": "energy", "law": "xu_kahraman", "bearings.stiffness": 1e8}
-    result = crosscheck(new_pair(*given, of_springs), **settings)
+    result = crosscheck(new_pair(*arguments, of_springs), **settings)
     worst = result.worst("exact")
     assert (result.verdict, worst.quantity) == (Verdict.DIFFERS, quantity)
     text = cause_of_difference(result).replace("\u00a0", " ")
     assert words in text
-    name, _, rest = text.partition("Without it the ")[2].partition(" differs by ")
+    _, _, without = text.partition("Without it the ")
+    name, _, rest = without.partition(" differs by ")
     assert name == NAMES[quantity]
-    assert float(rest.partition(" %")[0]) < 100.0 * left < 25.0 * worst.difference
+    assert float(rest.partition(" %")[0]) < 100.0 * share_left < 25.0 * worst.difference
     if quantity == "dte":
         inertia = {
             f"{g}.inertia": 10.0 * getattr(bodies(result.pair), f"inertia_{g}") for g in ("pinion", "gear")
@@ -216,7 +217,8 @@ def test_a_sound_pair_and_its_variant_obey_the_conservation_laws(check):
     for result in (check, check.variant):
         checks = [j.check for j in result.conservation]
         assert len(set(checks)) == len(checks) > 25
-    pinion, gear = check.variant.pair.bearings.pinion, check.variant.pair.bearings.gear
+    pinion = check.variant.pair.bearings.pinion
+    gear = check.variant.pair.bearings.gear
     values = [getattr(b, f"{axis}_stiffness") for b in (pinion, gear) for axis in ("loa", "oloa")]
     assert len(set(values)) == 4
     assert check.variant.pair.pinion.teeth != check.variant.pair.gear.teeth

@@ -45,8 +45,8 @@ def stiffness(model, **more):
 def relief(amount, pinion, gear):
     angles = {"pinion": pinion, "gear": gear}
     shapes = {
-        f"{g}.tip_relief": {"shape": "linear", "amount": amount, "start_roll_angle": at}
-        for g, at in angles.items()
+        f"{g}.tip_relief": {"shape": "linear", "amount": amount, "start_roll_angle": roll_angle}
+        for g, roll_angle in angles.items()
     }
     return shapes | {"mesh.relief": "static"}
 
@@ -100,7 +100,8 @@ def test_a_drawn_sound_pair_is_not_refused(seed, number, cycles):
 
 
 def test_the_variant_of_a_pair_with_a_change_of_regime_is_not_refused():
-    pair = asymmetric_variant(list(drawn(19, "final.8"))[18])
+    *_, last = drawn(19, "final.8")
+    pair = asymmetric_variant(last)
     assert crosscheck(pair, cycles=6, samples_per_cycle=64, variant=False).failures == ()
 
 
@@ -123,7 +124,8 @@ def test_a_motion_small_beside_its_deflection_is_integrated_more_tightly():
     )
     assert result.failures == ()
     settings = result.multibody["linear"].attrs["settings"]
-    assert float(settings.partition("rtol=")[2].partition(",")[0]) < 1e-10
+    _, _, after_rtol = settings.partition("rtol=")
+    assert float(after_rtol.partition(",")[0]) < 1e-10
 
 
 FREE = {"friction.law": "none", "mesh.stiffness.model": "parabolic"}

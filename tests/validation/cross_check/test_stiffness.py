@@ -102,21 +102,21 @@ def test_a_table_is_confirmed_at_its_points(kind, ramp, monkeypatch):
     for pair in every_pair():
         g = pair.geometry
         points = np.linspace(-0.03, g.contact_ratio + 0.03, 31) if kind == "pair" else np.arange(17) / 17.0
-        given = 3e8 * (1.0 + 0.2 * np.cos(2.0 * np.pi * points) + 0.1 * np.sin(4.0 * np.pi * points))
+        samples = 3e8 * (1.0 + 0.2 * np.cos(2.0 * np.pi * points) + 0.1 * np.sin(4.0 * np.pi * points))
         table = {
             "model": "table",
             "kind": kind,
             "axis": "phase",
             "points": tuple(points),
-            "stiffness": tuple(given),
+            "stiffness": tuple(samples),
             "ramp_length": ramp,
         }
         fields = {"mesh.contact": "prescribed", "mesh.relief": "ignored", "mesh.stiffness": table}
         tabulated = pair.with_(fields)
         assert beyond(tabulated) == set(), pair.name
         # The curve of another table, with one value a hundredth larger, misses a point of this one.
-        given[9] *= 1.01
-        other = pair.with_(fields | {"mesh.stiffness": table | {"stiffness": tuple(given)}})
+        samples[9] *= 1.01
+        other = pair.with_(fields | {"mesh.stiffness": table | {"stiffness": tuple(samples)}})
         with monkeypatch.context() as wrong:
             wrong.setattr(stiffness, "pair_stiffness", lambda pair, other=other: pair_stiffness(other))
             assert beyond(tabulated) == {"stiffness"}, pair.name

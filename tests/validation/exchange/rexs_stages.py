@@ -112,7 +112,7 @@ def rexs_text(stage, version, shifts="coefficient", tips="diameter", left_out=()
     for number, (z, x, tip, width) in enumerate(
         zip(stage.teeth, stage.shifts, stage.tips, stage.width, strict=True), 1
     ):
-        own = x if shifts == "coefficient" or (number == 1 and shifts in ("sum", "first")) else None
+        coefficient = x if shifts == "coefficient" or (number == 1 and shifts in ("sum", "first")) else None
         parts.append(
             component(
                 10 * number, "cylindrical_gear", number_of_teeth=z, normal_module=stage.module,
@@ -129,7 +129,7 @@ def rexs_text(stage, version, shifts="coefficient", tips="diameter", left_out=()
                 component(
                     10 * number + side, flank, normal_pressure_angle=stage.pressure_angle,
                     pressure_angle_in_the_transverse_section=transverse,
-                    addendum_modification_coefficient=own,
+                    addendum_modification_coefficient=coefficient,
                     addendum_modification=x * stage.module if shifts == "length" else None,
                     addendum_coefficient_basic_profile=stage.addendum if tips == "coefficient" else None,
                 )

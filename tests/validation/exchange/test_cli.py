@@ -46,8 +46,8 @@ def test_what_a_rexs_file_lacks_is_given_with_the_command(command, tmp_path):
     assert "--set basic_rack.pressure_angle=VALUE" in answer
     assert not (tmp_path / "pair.toml").exists()
     angle = STAGES["23/67"].pressure_angle
-    given = ("--set", f"basic_rack.pressure_angle={angle!r}", "--speed", "1450", "--oil", "vg220")
-    code, answer = command("init", "--from-rexs", "old.rexs", *given, "-o", "pair.toml")
+    options = ("--set", f"basic_rack.pressure_angle={angle!r}", "--speed", "1450", "--oil", "vg220")
+    code, answer = command("init", "--from-rexs", "old.rexs", *options, "-o", "pair.toml")
     assert code == 0
     assert answer.index("tip_diameter are not in the file") < answer.index("what weighs most stands first")
     pair = lumped.load_gear_pair(tmp_path / "pair.toml")
@@ -109,17 +109,17 @@ def test_a_sweep_becomes_one_table_with_its_axes_and_says_what_is_left_out(comma
     assert len(rows) == 4
     with xr.open_dataset("sweep/results.nc", engine="h5netcdf") as result:
         for row in rows:
-            at = (
+            case = (
                 result.sel(
                     torque=float(row["torque [N*m]"]), centre_distance=float(row["centre_distance [mm]"])
                 )
                 if grid
                 else result.sel(case=int(row["case [1]"]))
             )
-            assert float(row["torque [N*m]"]) == float(at.torque)
-            assert float(row["centre_distance [mm]"]) == float(at.centre_distance)
-            np.testing.assert_array_equal(float(row["contact_ratio [1]"]), at.contact_ratio)
-            assert int(row["status [1]"]) == int(at.status)
+            assert float(row["torque [N*m]"]) == float(case.torque)
+            assert float(row["centre_distance [mm]"]) == float(case.centre_distance)
+            np.testing.assert_array_equal(float(row["contact_ratio [1]"]), case.contact_ratio)
+            assert int(row["status [1]"]) == int(case.status)
     assert command("export", "sweep/results.nc", "-o", "all.mat")[0] == 0
     everything = scipy.io.loadmat("all.mat", simplify_cells=True)
     assert "wedge" in str(np.atleast_1d(everything["failure_message"])[0])

@@ -29,8 +29,8 @@ def test_the_rows_are_those_of_the_worked_example_and_say_what_is_assumed():
     assert rows["tip diameter"]["assumed"] == "both"
     assert rows["normal backlash"]["assumed"] == "yes"
     assert rows["profile shift coefficient"]["assumed"] == rows["module"]["assumed"] == ""
-    known = rows_of(pair.with_({"gear.tip_diameter": 79.4}))
-    assert known["tip diameter"]["assumed"] == "pinion"
+    rows_by_word = rows_of(pair.with_({"gear.tip_diameter": 79.4}))
+    assert rows_by_word["tip diameter"]["assumed"] == "pinion"
 
 
 def test_init_prints_them_beside_the_file(tmp_path):

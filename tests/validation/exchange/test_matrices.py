@@ -55,10 +55,10 @@ def test_what_a_chart_varies_is_varied(tmp_path):
     steps = np.array([1.7, 0.9]).reshape(2, 1, 1)
     np.savez(tmp_path / "m.npz", M=1.0, K=0.0, C=0.5, period=3.0, K_times=[0.0, 1.5, 3.0], K_values=steps)
     model = read_second_order(tmp_path / "m.npz")
-    for kept, period in (({}, 3.0), ({"frequency": 0.2}, 5.0)):
+    for frequency, period in (({}, 3.0), ({"frequency": 0.2}, 5.0)):
         for factor in (0.5, 1.5):
-            found = monodromy(model.system(**kept, variation=factor, damping=0.0))
-            assert np.trace(found.matrix) == pytest.approx(
+            flow = monodromy(model.system(**frequency, variation=factor, damping=0.0))
+            assert np.trace(flow.matrix) == pytest.approx(
                 meissner_trace(1.3, 0.4 * factor, period), abs=1e-10
             )
     # det M = exp(-c T)
@@ -114,10 +114,10 @@ def test_a_wrong_field_is_refused_by_its_name(tmp_path, change, field, word):
 
 def test_the_command_prints_bounds_and_writes_a_chart(tmp_path):
     np.savez(tmp_path / "rotor.npz", **FIELDS)
-    found = run("floquet", tmp_path / "rotor.npz", "--json")
-    data = json.loads(found.stdout)
+    printed = run("floquet", tmp_path / "rotor.npz", "--json")
+    data = json.loads(printed.stdout)
     exact = monodromy(read_second_order(tmp_path / "rotor.npz").system())
-    assert (data["verdict"], data["certificate"], found.exit_code) == ("stable", "proven", 0)
+    assert (data["verdict"], data["certificate"], printed.exit_code) == ("stable", "proven", 0)
     assert data["multipliers"] == [[z.real, z.imag] for z in exact.multipliers]
     axes = ("--axis", "frequency=4:6:3", "--axis", "damping=0:1:2")
     made = run("floquet", tmp_path / "rotor.npz", *axes, "-o", tmp_path / "c.nc", "-o", tmp_path / "c.png")

@@ -20,8 +20,8 @@ DRAWING = {
 
 
 def init(*more):
-    given = [part for key, value in OWN.items() if key not in more for part in (key, value)]
-    return CliRunner().invoke(app, ["init", *given, *more])
+    options = [part for key, value in OWN.items() if key not in more for part in (key, value)]
+    return CliRunner().invoke(app, ["init", *options, *more])
 
 
 def test_the_file_holds_what_was_given_and_says_why_the_rest_is_assumed(tmp_path):
@@ -29,7 +29,7 @@ def test_the_file_holds_what_was_given_and_says_why_the_rest_is_assumed(tmp_path
     result = init("--set", "bearings.stiffness=300 N/um", "--oil", "vg220", "--law", "II", "-o", str(path))
     assert result.exit_code == 0, result.output
     pair = load_gear_pair(path)
-    found = leaf_paths(pair)
+    values = leaf_paths(pair)
     sources = dict(pair.sources)
     expected = {
         "name": "mypair", "pinion.teeth": 19, "gear.teeth": 41, "basic_rack.module": 2.5,
@@ -38,10 +38,10 @@ def test_the_file_holds_what_was_given_and_says_why_the_rest_is_assumed(tmp_path
         "lubricant.viscosity_law.iso_vg": 220, "friction.law": "benedict_kelley",
     }  # fmt: skip
     for key, value in expected.items():
-        assert found[key] == value
+        assert values[key] == value
         assert key == "name" or sources[key] == GIVEN
     sizes = {f"{gear}.{size}" for gear in ("pinion", "gear") for size in ("profile_shift", "tip_alteration")}
-    assert {*sources, *pair.assumed} == set(found) - {"name", "description"} | sizes
+    assert {*sources, *pair.assumed} == set(values) - {"name", "description"} | sizes
     assert not {*sources} & {*pair.assumed}
     assert {*sources.values()} == {GIVEN}
     assert {*reasons(pair)} == {*pair.assumed}
@@ -50,7 +50,7 @@ def test_the_file_holds_what_was_given_and_says_why_the_rest_is_assumed(tmp_path
     assert len(lines) == len(pair.assumed)
     assert lines.count("um, assumed: ground flanks") == 2
     assert "assumed: usual for steel gears, 0.03 to 0.17" in lines
-    assert "centre_distance" not in found
+    assert "centre_distance" not in values
 
 
 def test_what_options_do_not_name_is_set_and_counts_as_given():
@@ -66,10 +66,10 @@ def test_what_options_do_not_name_is_set_and_counts_as_given():
     assert (pair.bearings.pinion.loa_stiffness, pair.bearings.pinion.oloa_stiffness) == (2e8, 0.46 * 2e8)
     assert pair.bearings.gear.type == "ball"
     assert (pair.mesh.stiffness.model, pair.mesh.backlash) == ("energy", 0.05e-3)
-    given = {path for path, source in dict(pair.sources).items() if source == GIVEN}
-    assert given >= {"pinion.profile_shift", "gear.face_width", "mesh.stiffness.model"}
-    assert given >= {"pinion.tip_relief.amount", "bearings.pinion.loa_stiffness"}
-    assert not given & {"gear.profile_shift", "bearings.pinion.oloa_stiffness", "mesh.stiffness.scale"}
+    from_user = {path for path, source in dict(pair.sources).items() if source == GIVEN}
+    assert from_user >= {"pinion.profile_shift", "gear.face_width", "mesh.stiffness.model"}
+    assert from_user >= {"pinion.tip_relief.amount", "bearings.pinion.loa_stiffness"}
+    assert not from_user & {"gear.profile_shift", "bearings.pinion.oloa_stiffness", "mesh.stiffness.scale"}
 
 
 def test_entries_of_lists_have_their_units_and_remarks():
@@ -86,9 +86,9 @@ def test_entries_of_lists_have_their_units_and_remarks():
 
 def test_what_follows_from_the_centre_distance_is_a_comment_and_moves_with_it():
     """47/50 of module 2.5 on 122 mm: x1 + x2 = 0.3069 (ISO 21771), shared by the numbers of teeth."""
-    given = {"teeth": "47/50", "basic_rack.module": 2.5, "gears.face_width": 20.0, "centre_distance": 122}
-    given |= {"operating.pinion_speed": 1500.0, "operating.pinion_torque": 100.0}
-    text = new_pair_text("x", given)
+    drawing = {"teeth": "47/50", "basic_rack.module": 2.5, "gears.face_width": 20.0, "centre_distance": 122}
+    drawing |= {"operating.pinion_speed": 1500.0, "operating.pinion_torque": 100.0}
+    text = new_pair_text("x", drawing)
     pair = load_gear_pair(tomllib.loads(text))
     assert sum(pair.profile_shifts) == pytest.approx(0.3069, abs=0.5e-4)
     assert pair.profile_shifts[0] / pair.profile_shifts[1] == pytest.approx(50 / 47, rel=1e-12)
@@ -96,8 +96,10 @@ def test_what_follows_from_the_centre_distance_is_a_comment_and_moves_with_it():
     assert [line.split()[3] for line in lines] == [f"{shift:.6g}" for shift in pair.profile_shifts]
     assert all("assumed: what the centre distance asks for" in line for line in lines)
     assert text.count("\n# tip_alteration = ") == 2
-    moved = load_gear_pair(tomllib.loads(text.replace("centre_distance = 122.0", "centre_distance = 121.25")))
-    assert moved.profile_shifts == (0.0, 0.0)
+    shorter = load_gear_pair(
+        tomllib.loads(text.replace("centre_distance = 122.0", "centre_distance = 121.25"))
+    )
+    assert shorter.profile_shifts == (0.0, 0.0)
     typed = text.replace("# profile_shift", "profile_shift")
     assert load_gear_pair(tomllib.loads(typed)).state("pinion.profile_shift") is State.KNOWN
 
@@ -105,9 +107,9 @@ def test_what_follows_from_the_centre_distance_is_a_comment_and_moves_with_it():
 @pytest.mark.parametrize(("teeth", "centre", "undercut"), [("13/55", 102.0, True), ("20/90", 165.0, False)])
 def test_few_teeth_without_a_profile_shift_are_stock_gears(teeth, centre, undercut):
     """The centre distance is m (z_1 + z_2)/2; that undercut shortens the contact is said in the file."""
-    given = {"teeth": teeth, "basic_rack.module": 3.0, "gears.face_width": 30.0}
-    given |= {"operating.pinion_speed": 1500.0, "operating.pinion_torque": 100.0}
-    text = new_pair_text("x", given)
+    drawing = {"teeth": teeth, "basic_rack.module": 3.0, "gears.face_width": 30.0}
+    drawing |= {"operating.pinion_speed": 1500.0, "operating.pinion_torque": 100.0}
+    text = new_pair_text("x", drawing)
     pair = load_gear_pair(tomllib.loads(text))
     assert pair.profile_shifts == (0.0, 0.0)
     assert 1e3 * pair.geometry.centre_distance == pytest.approx(centre, rel=1e-12)
@@ -142,10 +144,12 @@ def test_a_value_edited_in_the_text_is_known_and_the_rest_assumed():
 
 def test_an_assumption_of_the_user_has_not_the_reason_of_the_program():
     pair = load_gear_pair(tomllib.loads(new_pair_text("x", DRAWING)))
-    own = pair.with_({"pinion.youngs_modulus": 3.0, "gear.roughness": 1.6})
-    own = own.with_({"assumed": own.assumed.to_mapping() | {"pinion.youngs_modulus": 3.0}})
-    assert reasons(own).keys() == own.assumed.keys() - {"pinion.youngs_modulus"}
-    assert reasons(own)["gear.youngs_modulus"] == "steel"
+    with_sources = pair.with_({"pinion.youngs_modulus": 3.0, "gear.roughness": 1.6})
+    with_sources = with_sources.with_(
+        {"assumed": with_sources.assumed.to_mapping() | {"pinion.youngs_modulus": 3.0}}
+    )
+    assert reasons(with_sources).keys() == with_sources.assumed.keys() - {"pinion.youngs_modulus"}
+    assert reasons(with_sources)["gear.youngs_modulus"] == "steel"
 
 
 @pytest.mark.parametrize(
@@ -154,9 +158,9 @@ def test_an_assumption_of_the_user_has_not_the_reason_of_the_program():
     [(2.5, 0.115), (0.5, 0.05)],
 )
 def test_an_own_pair_has_the_backlash_of_industrial_gears(module, backlash):
-    given = {"teeth": "19/41", "basic_rack.module": module, "gears.face_width": 8.0 * module}
-    given |= {"operating.pinion_speed": 1450.0, "operating.pinion_torque": 0.1}
-    pair = load_gear_pair(tomllib.loads(new_pair_text("x", given)))
+    drawing = {"teeth": "19/41", "basic_rack.module": module, "gears.face_width": 8.0 * module}
+    drawing |= {"operating.pinion_speed": 1450.0, "operating.pinion_torque": 0.1}
+    pair = load_gear_pair(tomllib.loads(new_pair_text("x", drawing)))
     assert pair.geometry.normal_backlash == pytest.approx(1e-3 * backlash)
 
 
@@ -164,7 +168,7 @@ THIN = {"gear.bore": 82.0}  # root radius 48.1 mm over 41 mm: 1.17
 
 
 @pytest.mark.parametrize(
-    ("given", "model", "source"),
+    ("stiffness", "model", "source"),
     [
         ({}, "finite_elements", "computed from the form of both gears"),
         ({"gear.bore": 30.0}, "finite_elements", "computed from the form of both gears"),
@@ -174,12 +178,12 @@ THIN = {"gear.bore": 82.0}  # root radius 48.1 mm over 41 mm: 1.17
         (THIN | {"mesh.stiffness.plane": "strain"}, "finite_elements", "computed from the form"),
     ],
 )
-def test_the_teeth_of_a_new_pair_are_finite_elements_but_for_thin_rims(given, model, source, monkeypatch):
+def test_the_teeth_of_a_new_pair_are_finite_elements_but_for_thin_rims(stiffness, model, source, monkeypatch):
     # What writes a file solves nothing.
     monkeypatch.setattr("lumped.stiffness.finite_elements.flank_compliance", None)
     drawing = {"teeth": "19/41", "basic_rack.module": 2.5, "gears.face_width": 20.0}
     drawing |= {"operating.pinion_speed": 1450.0, "operating.pinion_torque": 80.0}
-    pair = load_gear_pair(tomllib.loads(new_pair_text("x", drawing | given)))
+    pair = load_gear_pair(tomllib.loads(new_pair_text("x", drawing | stiffness)))
     assert pair.mesh.stiffness.model == model
     words = dict(pair.sources) | reasons(pair)
     assert words["mesh.stiffness.model"].startswith(source)

@@ -18,9 +18,9 @@ from validation.exchange.rexs.model import ATTRIBUTES, KINDS, WRITTEN, model_of
 def test_the_ending_says_the_form_and_every_form_is_read(tmp_path, suffix, first):
     path = write_rexs("fzg_c", tmp_path / f"pair{suffix}")
     assert path.read_bytes().removeprefix(b"\xef\xbb\xbf")[:1] == first
-    found = lumped.load_gear_pair(gear_pair_from_rexs(path)[0])
+    pair = lumped.load_gear_pair(gear_pair_from_rexs(path)[0])
     reference = lumped.load_gear_pair(gear_pair_from_rexs(write_rexs("fzg_c", tmp_path / "other.rexs"))[0])
-    assert found.with_(sources={}, description="") == reference.with_(sources={}, description="")
+    assert pair.with_(sources={}, description="") == reference.with_(sources={}, description="")
 
 
 def test_everything_that_rexs_can_say_comes_back(preset, tmp_path):

@@ -11,12 +11,12 @@ from lumped.schema.pair import leaf_paths
 from validation.exchange import gear_pair_from_rexs, write_rexs
 
 
-def _relief(kind, depth, start, at, shape="linear"):
+def _relief(kind, depth, start, end, shape="linear"):
     return (
         f'<component id="70" type="{kind}"><attribute id="shape_of_relief" unit="none">{shape}</attribute>'
         f'<attribute id="{kind}_depth" unit="mm">{depth}</attribute>'
         f'<attribute id="{kind}_datum_diameter" unit="mm">{start!r}</attribute>'
-        f'<attribute id="{kind}_evaluation_reference" unit="mm">{at!r}</attribute></component>'
+        f'<attribute id="{kind}_evaluation_reference" unit="mm">{end!r}</attribute></component>'
     )
 
 
@@ -128,9 +128,9 @@ def test_the_first_load_case_stands_in_and_the_accumulation_does_not(xml, save):
     stated, notes = gear_pair_from_rexs(save(text))
     assert stated["operating"]["pinion_torque"] == 42.5  # the component's own value decides
     assert any("2 load cases" in note for note in notes)
-    own = '<attribute id="torque_around_u_axis" unit="N m">-42.5</attribute>'
-    assert own in text
-    mapping, _ = gear_pair_from_rexs(save(text.replace(own, "")))
+    torque_element = '<attribute id="torque_around_u_axis" unit="N m">-42.5</attribute>'
+    assert torque_element in text
+    mapping, _ = gear_pair_from_rexs(save(text.replace(torque_element, "")))
     assert mapping["operating"]["pinion_torque"] == 7.5
     assert "load case 1" in mapping["sources"]["operating.pinion_torque"]
 
@@ -217,7 +217,7 @@ def test_values_that_cannot_be_assumed_are_asked_for_all_at_once(xml, save):
     )
     with pytest.raises(ParameterError) as refused:
         gear_pair_from_rexs(save(text))
-    fields = {p.field.rpartition(" ")[2] for p in refused.value.problems}
+    fields = {p.field.split(" ")[-1] for p in refused.value.problems}
     assert fields == {f"{gear}.{key}" for gear in ("pinion", "gear") for key in ("face_width", "teeth")}
 
 

@@ -195,16 +195,16 @@ def test_writing_refuses_what_it_cannot_write(tmp_path):
 def test_damaged_files_are_read_or_refused_but_nothing_else_happens(tmp_path, form):
     seed = 20240501
     dice = random.Random(seed)
-    whole = write_rexs(lumped.load_gear_pair("nasa_28_28"), tmp_path / f"pair{form}").read_bytes()
+    content = write_rexs(lumped.load_gear_pair("nasa_28_28"), tmp_path / f"pair{form}").read_bytes()
     words = b'0 -1 1e308 1e-320 null "" [] NaN \xff \0 < 99999999999'.split(b" ")
     path = tmp_path / f"damaged{form}"
     outcomes = set()
     for _ in range(150):
-        data = bytearray(whole)
+        data = bytearray(content)
         if dice.random() < 0.5:
             data[dice.randrange(len(data))] = dice.randrange(256)
         else:
-            numbers = list(re.finditer(rb'(?<=[>: "])-?\d+(\.\d+)?', whole))
+            numbers = list(re.finditer(rb'(?<=[>: "])-?\d+(\.\d+)?', content))
             place = dice.choice(numbers)
             data[place.start() : place.end()] = dice.choice(words)
         path.write_bytes(data)

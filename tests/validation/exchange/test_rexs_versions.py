@@ -187,9 +187,9 @@ def test_without_a_centre_distance_a_missing_shift_is_refused_with_all_its_place
         "--set gear.profile_shift=VALUE",
     ):  # fmt: skip
         assert word in str(problem)
-    given = pair_of(save(text), changes={"gear.profile_shift": -0.4742})
-    assert given.profile_shifts[1] == -0.4742
-    assert dict(given.sources)["gear.profile_shift"] == "given by the user"
+    pair = pair_of(save(text), changes={"gear.profile_shift": -0.4742})
+    assert pair.profile_shifts[1] == -0.4742
+    assert dict(pair.sources)["gear.profile_shift"] == "given by the user"
 
 
 def test_everything_that_is_missing_is_asked_for_at_once(save):
@@ -241,13 +241,14 @@ def test_tips_that_the_file_does_not_have_keep_the_clearance_and_stand_first_in_
     assert f"{usual.tips[0]:.3f} mm and {usual.tips[1]:.3f} mm" in tips
     assert f"contact ratio is then {usual.contact_ratio(usual.tips):.3f}" in tips
     (summary,) = [note for note in notes if "are assumed" in note and "values" in note]
-    assert summary.partition("first: ")[2].startswith("tips, speed, torque, backlash, bearings")
-    given, _ = gear_pair_from_rexs(
+    _, _, after_first = summary.partition("first: ")
+    assert after_first.startswith("tips, speed, torque, backlash, bearings")
+    mapping, _ = gear_pair_from_rexs(
         save(rexs_text(stage, "1.0", tips="none")), changes={"pinion.tip_diameter": 20.2, "speed": 1450}
     )
-    assert given["pinion"]["tip_diameter"] == 20.2
-    assert given["operating"]["pinion_speed"] == 1450
-    assert "operating.pinion_speed" not in given["assumed"]
+    assert mapping["pinion"]["tip_diameter"] == 20.2
+    assert mapping["operating"]["pinion_speed"] == 1450
+    assert "operating.pinion_speed" not in mapping["assumed"]
 
 
 def test_what_the_user_gives_stands_in_place_of_the_file(save):

@@ -48,9 +48,9 @@ def test_force_replaces_the_earlier_results_whole(tmp_path):
     out = tmp_path / "out"
     write(out, {"page": "old", "figures/a.png": "old"})
     write(out, {"page": "new", "data/x": "new"})
-    found = tree(out)
-    found.pop(CONTENTS)
-    assert found == {"page": "new", "data/x": "new"}
+    files = tree(out)
+    files.pop(CONTENTS)
+    assert files == {"page": "new", "data/x": "new"}
     assert names(out) == [CONTENTS, "data", "page"]
     assert names(tmp_path) == ["out"]
 
@@ -83,12 +83,12 @@ def test_a_failure_at_the_last_step_puts_everything_back(tmp_path, monkeypatch):
     out = tmp_path / "out"
     write(out, {"a": "old", "b": "old"})
     before = tree(out)
-    own = type(out).rename
+    rename = type(out).rename
 
-    def move(here, there):
-        if here.name == "new":
+    def move(source, target):
+        if source.name == "new":
             raise OSError(28, "No space left on device")
-        return own(here, there)
+        return rename(source, target)
 
     monkeypatch.setattr(type(out), "rename", move)
     with pytest.raises(StorageError, match="No space left"):
@@ -264,8 +264,8 @@ def test_a_result_that_does_not_fit_is_told_and_leaves_nothing(tmp_path):
     command = [sys.executable, "-c", RUNS, *outs]
     run = subprocess.run(command, preexec_fn=limited, capture_output=True, text=True, env=environment)
     assert run.returncode == 0, run.stderr
-    told = run.stderr.split("exit code 3")
-    assert len(told) == len(outs) + 1
-    assert [out in text for out, text in zip(outs, told, strict=False)] == [True] * len(outs)
+    messages = run.stderr.split("exit code 3")
+    assert len(messages) == len(outs) + 1
+    assert [out in text for out, text in zip(outs, messages, strict=False)] == [True] * len(outs)
     assert "Traceback" not in run.stderr
     assert list(tmp_path.iterdir()) == []

@@ -43,8 +43,8 @@ def written(pair, folder):
 
 @pytest.fixture(scope="session")
 def data(written):
-    with xr.open_dataset(written.with_suffix(".nc")) as found:
-        return found.load()
+    with xr.open_dataset(written.with_suffix(".nc")) as dataset:
+        return dataset.load()
 
 
 @pytest.fixture(scope="session")

@@ -79,29 +79,29 @@ def test_tab_goes_through_controls_and_charts_in_reading_order(page):
 
 def test_keys_and_buttons_zoom_and_the_window_follows_the_cursor(page, data):
     speeds = data["speed_rpm"].to_numpy()
-    whole = six_digits(speeds[[0, -1]])
+    full_range = six_digits(speeds[[0, -1]])
 
     def window():
         return page.drawn("stability-plot", "plot._fullLayout.xaxis.range")
 
-    assert window() == whole
+    assert window() == full_range
     dampings = six_digits(data["damping_ratio"][[0, -1]])
     assert page.drawn("stability-plot", "plot._fullLayout.yaxis.range") == dampings
     page.focus("stability")
     page.press("+", "+")
     low, high = window()
-    assert high - low == pytest.approx(0.25 * (whole[1] - whole[0]))
+    assert high - low == pytest.approx(0.25 * (full_range[1] - full_range[0]))
     assert low <= 4875.0 <= high
     page.choose("slice", 0)
     assert window() == [low, high]  # another slice keeps the zoom
     page.press(END)
     low, high = window()
-    assert high == whole[1]
-    assert high - low == pytest.approx(0.25 * (whole[1] - whole[0]))
+    assert high == full_range[1]
+    assert high - low == pytest.approx(0.25 * (full_range[1] - full_range[0]))
     page.press("0")
-    assert window() == whole
+    assert window() == full_range
     page.run("document.querySelector('#stability-buttons button').click()")
-    assert window()[1] - window()[0] == pytest.approx(0.5 * (whole[1] - whole[0]))
+    assert window()[1] - window()[0] == pytest.approx(0.5 * (full_range[1] - full_range[0]))
 
 
 def test_every_control_has_a_name_and_room_for_a_finger(browser, written):
@@ -112,10 +112,10 @@ def test_every_control_has_a_name_and_room_for_a_finger(browser, written):
         "  return [(e.labels?.[0] ?? e).textContent.trim(), box.height, box.left, box.right]; })"
     )
     assert len(controls) == 14
-    for name, height, left, right in controls:
+    for name, height, left_edge, right_edge in controls:
         assert name
         assert height >= 24  # WCAG 2.2, 2.5.8 target size
-        assert 0 <= left < right <= 390
+        assert 0 <= left_edge < right_edge <= 390
 
 
 @pytest.mark.parametrize("dark", [False, True])
@@ -148,7 +148,8 @@ def luminance(colour):
         else [float(v) for v in colour[colour.index("(") + 1 : -1].split(",")[:3]]
     )
     linear = [v / 12.92 if v <= 0.04045 else ((v + 0.055) / 1.055) ** 2.4 for v in (c / 255 for c in rgb)]
-    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+    red, green, blue = linear
+    return 0.2126 * red + 0.7152 * green + 0.0722 * blue
 
 
 def contrast(one, other):

@@ -61,23 +61,23 @@ def results(pair):
 
 def test_the_charts_are_those_of_the_general_engine(data, pair):
     """The chart comes from the compiled kernel; the propagation it is held against shares no code."""
-    own = {
+    stiffnesses = {
         f"bearings.{g}.{d}_stiffness": getattr(getattr(pair.bearings, g), f"{d}_stiffness")
         for g in ("pinion", "gear")
         for d in ("loa", "oloa")
     }
     for k, i, j in ((0, 0, 30), (2, 3, 11), (1, 5, 4)):
-        at = {"speed_rpm": float(data["speed_rpm"][j]), "damping_ratio": float(data["damping_ratio"][i])}
+        point = {"speed_rpm": float(data["speed_rpm"][j]), "damping_ratio": float(data["damping_ratio"][i])}
         factor = float(data["bearing_factor"][k])
-        stiffer = pair.with_({path: factor * value for path, value in own.items()})
-        expected = gear_pair_multipliers(vary(stiffer, at), 1e-9, method="gauss").spectral_radius
-        found = data["spectral_radius_over_bearing_factor"][k, i, j]
-        assert float(found) == pytest.approx(expected, abs=1e-6)  # the page shows six decimals
+        stiffer = pair.with_({path: factor * value for path, value in stiffnesses.items()})
+        expected = gear_pair_multipliers(vary(stiffer, point), 1e-9, method="gauss").spectral_radius
+        spectral_radius = data["spectral_radius_over_bearing_factor"][k, i, j]
+        assert float(spectral_radius) == pytest.approx(expected, abs=1e-6)  # the page shows six decimals
         mean = float(data["friction_coefficient"][k])
-        rubbing = vary(pair, at | {"friction_coefficient": mean})
+        rubbing = vary(pair, point | {"friction_coefficient": mean})
         expected = gear_pair_multipliers(rubbing, 1e-9, method="gauss").spectral_radius
-        found = data["spectral_radius_over_friction_coefficient"][k, i, j]
-        assert float(found) == pytest.approx(expected, abs=1e-6)
+        spectral_radius = data["spectral_radius_over_friction_coefficient"][k, i, j]
+        assert float(spectral_radius) == pytest.approx(expected, abs=1e-6)
 
 
 def test_the_pair_itself_is_on_every_chart(data, pair, results):
@@ -85,25 +85,25 @@ def test_the_pair_itself_is_on_every_chart(data, pair, results):
     expected = float(stability_chart(pair, axes)["spectral_radius"].squeeze())
     assert results.multipliers.spectral_radius == pytest.approx(expected, abs=1e-9)
     for key, slices in results.stability.items():
-        here = slices.chart.isel({key: slices.index_of_pair}).sel(speed_rpm=4875.0, damping_ratio=0.016)
-        assert float(here["spectral_radius"]) == pytest.approx(expected, abs=1e-6), key
+        nearest = slices.chart.isel({key: slices.index_of_pair}).sel(speed_rpm=4875.0, damping_ratio=0.016)
+        assert float(nearest["spectral_radius"]) == pytest.approx(expected, abs=1e-6), key
 
 
 def test_the_responses_are_those_of_the_models(data, pair):
     for law in ("none", "coulomb", "xu_kahraman"):
         for j in (0, 5):
             rpm = float(data["speed"][j])
-            at = pair.with_({"friction.law": law, "operating.pinion_speed": rpm})
-            motion = lumped.steady_state(at, samples_per_cycle=96)
+            running = pair.with_({"friction.law": law, "operating.pinion_speed": rpm})
+            motion = lumped.steady_state(running, samples_per_cycle=96)
             one = data.sel(law=law).isel(speed=j)
             # The speed passes from rpm to rad/s and back, and peaks are differences of larger numbers.
             for name, variable in (("dte", "dte_peak_to_peak"), ("y_p", "y_p_peak_to_peak")):
                 expected = motion.attrs[f"{name}_peak_to_peak"]
                 scale = float(np.abs(motion[name]).max())
                 assert float(one[variable]) == pytest.approx(expected, abs=1e-9 * scale)
-            g = at.geometry
-            torque = at.operating.pinion_torque
-            contact = contact_loss(at, g, motion)
+            g = running.geometry
+            torque = running.operating.pinion_torque
+            contact = contact_loss(running, g, motion)
             sliding = sliding_reversal(g, motion)
             lowest = contact.value * g.base_radius_pinion / torque
             assert float(one["lowest_load"]) == pytest.approx(lowest, rel=1e-8)
@@ -121,18 +121,18 @@ def test_every_variable_of_the_data_file_has_a_unit_and_a_name(data):
 
 def test_the_page_is_small_closed_and_names_its_scripts_by_hash(written, text):
     assert written.stat().st_size < 6e6
-    found = _Page(text)
-    assert not any({"src", "srcset"} & set(attrs) for _, attrs in found.tags)
-    links = [attrs["href"] for _, attrs in found.tags if "href" in attrs]
+    page = _Page(text)
+    assert not any({"src", "srcset"} & set(attrs) for _, attrs in page.tags)
+    links = [attrs["href"] for _, attrs in page.tags if "href" in attrs]
     assert links == ["#stability"]
-    policy = next(attrs["content"] for _, attrs in found.tags if attrs.get("http-equiv"))
+    policy = next(attrs["content"] for _, attrs in page.tags if attrs.get("http-equiv"))
     rules = dict(rule.strip().split(" ", 1) for rule in policy.split(";"))
     assert rules["default-src"] == rules["connect-src"] == "'none'"
     assert "unsafe" not in rules["script-src"]
-    digests = [hashlib.sha256(script.encode()).digest() for script in found.scripts[1:]]
+    digests = [hashlib.sha256(script.encode()).digest() for script in page.scripts[1:]]
     assert rules["script-src"].split() == [f"'sha256-{base64.b64encode(d).decode()}'" for d in digests]
-    assert json.loads(found.scripts[0])["point"] == {"speed": 4875.0, "damping": 0.016}
-    assert "noscript" in {tag for tag, _ in found.tags}  # says where the numbers are
+    assert json.loads(page.scripts[0])["point"] == {"speed": 4875.0, "damping": 0.016}
+    assert "noscript" in {tag for tag, _ in page.tags}  # says where the numbers are
 
 
 def test_a_script_that_could_end_its_element_is_not_written(results, monkeypatch):
@@ -165,11 +165,11 @@ def test_a_speed_without_periodic_motion_is_a_gap(results):
 def test_a_law_that_the_pair_does_not_admit_is_named(pair):
     """Law II has no value from a roughness of 1.13 um on."""
     rough = pair.with_({"pinion.roughness": 1.2, "gear.roughness": 1.2})
-    found = compute(rough, TINY)
-    assert "benedict_kelley" in found.missing
-    assert "benedict_kelley" not in found.sweep["law"]
-    assert str(found.sweep["law"].values[found.own_law]) == "xu_kahraman"
-    assert "Not available for this pair: II Benedict-Kelley" in page.render(found, "x.nc")
+    results = compute(rough, TINY)
+    assert "benedict_kelley" in results.missing
+    assert "benedict_kelley" not in results.sweep["law"]
+    assert str(results.sweep["law"].values[results.own_law]) == "xu_kahraman"
+    assert "Not available for this pair: II Benedict-Kelley" in page.render(results, "x.nc")
 
 
 def test_the_same_pair_gives_the_same_page(pair, results):

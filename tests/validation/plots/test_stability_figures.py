@@ -41,8 +41,8 @@ def test_tongues_are_named_in_the_chart(pair) -> None:
     axes = {"speed_rpm": np.linspace(6000.0, 18000.0, 121), "damping_ratio": np.linspace(0.0, 0.03, 7)}
     chart = stability_chart(pair, axes)
     lines = {str(t): s for t, s in predicted_lines(pair).items()}
-    at = {"speed_rpm": 7000.0, "damping_ratio": 0.01}
-    figure = stability_figure(chart, at, label_regions(pair, chart), lines)
+    point = {"speed_rpm": 7000.0, "damping_ratio": 0.01}
+    figure = stability_figure(chart, point, label_regions(pair, chart), lines)
     assert {"2ω₃/2", "2ω₃/5", "operating point"} <= texts(figure)
     assert figure.axes[0].get_xlabel() == "pinion speed [rpm]"
 
@@ -70,15 +70,16 @@ def over_speed_and_damping(speeds, dampings, radius) -> xr.Dataset:
 
 
 def test_a_large_chart_is_one_image_and_not_a_polygon_per_point() -> None:
-    x, y = np.linspace(1000.0, 20000.0, 1000), np.linspace(0.0, 0.05, 500)
+    x = np.linspace(1000.0, 20000.0, 1000)
+    y = np.linspace(0.0, 0.05, 500)
     radius = 0.9 + 0.15 * np.exp(-(((x[:, None] - 9000.0) / 500.0) ** 2) - (y / 0.01) ** 2)
     chart = over_speed_and_damping(x, y, radius)
     ax = stability_figure(chart, {"speed_rpm": 5000.0, "damping_ratio": 0.05}).axes[0]
     (image,) = ax.images
     assert image.get_array().shape == (500, 1000)
     # Nodes lie in the middle of their pixels.
-    left, right, bottom, top = image.get_extent()
-    assert (left, right) == pytest.approx((1000.0 - 9.51, 20000.0 + 9.51), abs=0.01)
+    left_edge, right_edge, bottom, top = image.get_extent()
+    assert (left_edge, right_edge) == pytest.approx((1000.0 - 9.51, 20000.0 + 9.51), abs=0.01)
     assert bottom == pytest.approx(-top + 0.05)
     assert not [c for c in ax.collections if isinstance(c, QuadMesh)]
     assert sum(len(c.get_paths()) for c in ax.collections) < 10
@@ -125,7 +126,8 @@ def test_what_is_neutral_has_circles_and_no_edge_but_that_of_unstable_nodes() ->
 
 
 def test_uneven_axes_and_falling_ones_are_drawn_at_their_values() -> None:
-    x, y = np.array([3000.0, 1000.0, 1100.0]), np.array([0.01, 0.05, 0.0])
+    x = np.array([3000.0, 1000.0, 1100.0])
+    y = np.array([0.01, 0.05, 0.0])
     values = np.array([[0.3, 0.4, 0.35], [0.1, 0.15, 0.12], [0.2, 0.28, 0.25]])
     ax = stability_figure(over_speed_and_damping(x, y, values)).axes[0]
     assert ax.figure.get_supxlabel() == "hatched: unstable; error bounds: partly proven"

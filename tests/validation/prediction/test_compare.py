@@ -38,10 +38,10 @@ RELIEVED = known_sizes(unlike_pair("rack_25_degrees_always_pushing")).with_(
 
 def test_the_load_of_one_machine_is_the_same_in_all_variants():
     """Two per cent more torque is more transmission error in each machine, whatever its torque is."""
-    found = compare(TORQUE, GREATER, samples=16)
-    assert found["input"].to_numpy().tolist() == ["operating.pinion_torque"]
-    assert float(found["better"].sel(result="dte_peak_to_peak", variant="A", other="B")) == 1.0
-    ratio = found["dte_peak_to_peak"][1] / found["dte_peak_to_peak"][0]
+    comparison = compare(TORQUE, GREATER, samples=16)
+    assert comparison["input"].to_numpy().tolist() == ["operating.pinion_torque"]
+    assert float(comparison["better"].sel(result="dte_peak_to_peak", variant="A", other="B")) == 1.0
+    ratio = comparison["dte_peak_to_peak"][1] / comparison["dte_peak_to_peak"][0]
     np.testing.assert_allclose(ratio, 1.02, rtol=1e-9)
 
 
@@ -50,21 +50,21 @@ def test_parts_of_other_size_have_deviations_of_their_own(monkeypatch):
     triangle of sides 1.04 - .9792, out of .08 by .0816.
     """
     monkeypatch.setattr(module, "_COMMON", ())
-    found = compare(TORQUE, GREATER, samples=64)
-    assert found.sizes["input"] == 2
+    comparison = compare(TORQUE, GREATER, samples=64)
+    assert comparison.sizes["input"] == 2
     expected = (1.04 - 0.9792) ** 2 / 2 / (0.08 * 0.0816)
     # 64 Sobol points count a triangle to two of them; the draws in common would give 0.
-    share = float(found["better"].sel(result="dte_peak_to_peak", variant="B", other="A"))
+    share = float(comparison["better"].sel(result="dte_peak_to_peak", variant="B", other="A"))
     assert share == pytest.approx(expected, abs=2 / 64)
-    assert float(found["equal"].sel(result="dynamic_factor", variant="A", other="B")) == 1.0
+    assert float(comparison["equal"].sel(result="dynamic_factor", variant="A", other="B")) == 1.0
 
 
 def drawn(*pairs):
     """Field -> the groups of variants that share a draw."""
-    found = {}
+    letters = {}
     for draw in common_draws(pairs):
-        found.setdefault(draw.path, []).append("".join("ABC"[k] for k in sorted(draw.inputs)))
-    return {name: sorted(groups) for name, groups in found.items()}
+        letters.setdefault(draw.path, []).append("".join("ABC"[k] for k in sorted(draw.inputs)))
+    return {name: sorted(groups) for name, groups in letters.items()}
 
 
 AMOUNT, DAMPING, BEARING = (
@@ -79,8 +79,8 @@ def test_what_variants_have_in_common_is_one_draw():
     assert drawn(RELIEVED, other, deeper) == {AMOUNT: ["AB", "C"], DAMPING: ["ABC"], BEARING: ["ABC"]}
     stiff = RELIEVED.with_({BEARING: 3e8, DAMPING: 0.05})
     assert drawn(RELIEVED, stiff) == {AMOUNT: ["AB"], DAMPING: ["AB"], BEARING: ["A", "B"]}
-    known = RELIEVED.with_({"uncertainty": {AMOUNT: "+- 2 um"}})
-    assert drawn(RELIEVED, known) == {AMOUNT: ["AB"], DAMPING: ["A"], BEARING: ["A"]}
+    stated = RELIEVED.with_({"uncertainty": {AMOUNT: "+- 2 um"}})
+    assert drawn(RELIEVED, stated) == {AMOUNT: ["AB"], DAMPING: ["A"], BEARING: ["A"]}
     loose = RELIEVED.with_({"uncertainty": {AMOUNT: "+- 3 um"}})
     assert drawn(RELIEVED, loose)[AMOUNT] == ["A", "B"]
 
@@ -109,10 +109,10 @@ def three():
 
 
 def test_each_number_of_a_machine_is_that_of_its_own_inputs(three):
-    variants, found = three
-    assert set(found["input"].to_numpy()) == {f"{AMOUNT} (A, C)", f"{AMOUNT} (B)", DAMPING, BEARING}
+    variants, comparison = three
+    assert set(comparison["input"].to_numpy()) == {f"{AMOUNT} (A, C)", f"{AMOUNT} (B)", DAMPING, BEARING}
     for sample, (letter, pair) in itertools.product((0, 17), zip("ABC", variants, strict=True)):
-        share = found["share"].isel(sample=sample)
+        share = comparison["share"].isel(sample=sample)
         u = float(share.sel(input=f"{AMOUNT} (B)" if letter == "B" else f"{AMOUNT} (A, C)"))
         stiffness = pair.bearings.gear.loa_stiffness
         varied = pair.with_(
@@ -124,51 +124,57 @@ def test_each_number_of_a_machine_is_that_of_its_own_inputs(three):
         )
         numbers = spurcheck.predict(varied).numbers
         for name in RESULTS:
-            ours = float(found[name].isel(sample=sample).sel(variant=letter))
+            ours = float(comparison[name].isel(sample=sample).sel(variant=letter))
             assert ours == pytest.approx(numbers[name], rel=1e-7), (sample, letter, name)
 
 
 def test_shares_are_counted_as_said(three):
     """Counted again by loops over the machines; the interval by quantiles of the beta distribution."""
-    _, found = three
-    n = found.sizes["sample"]
+    _, comparison = three
+    n = comparison.sizes["sample"]
     for name, larger in RESULTS.items():
         sign = -1.0 if larger else 1.0
-        cost = sign * found[name].to_numpy()
-        given = sign * found[f"{name}_given"].to_numpy()
-        of = found.sel(result=name)
+        cost = sign * comparison[name].to_numpy()
+        as_given = sign * comparison[f"{name}_given"].to_numpy()
+        result = comparison.sel(result=name)
         for i, j in itertools.permutations(range(3), 2):
-            assert float(of["better"][i, j]) == np.mean([cost[i, k] < cost[j, k] for k in range(n)])
-            off = sign * (cost[i] - cost[j])
-            percentiles = np.percentile(off, [5.0, 50.0, 95.0])
-            np.testing.assert_allclose(found[f"{name}_difference"][i, j], percentiles, rtol=1e-9)
-        order = np.argsort(given)
+            assert float(result["better"][i, j]) == np.mean([cost[i, k] < cost[j, k] for k in range(n)])
+            difference = sign * (cost[i] - cost[j])
+            percentiles = np.percentile(difference, [5.0, 50.0, 95.0])
+            np.testing.assert_allclose(comparison[f"{name}_difference"][i, j], percentiles, rtol=1e-9)
+        order = np.argsort(as_given)
         holding = sum(bool((np.argsort(cost[:, k]) == order).all()) for k in range(n))
-        assert float(of["holds"]) == holding / n
-        low, high = of["holds_interval"].to_numpy()
+        assert float(result["holds"]) == holding / n
+        low, high = result["holds_interval"].to_numpy()
         assert low == pytest.approx(beta.ppf(0.05, holding, n - holding + 1) if holding else 0.0)
         assert high == pytest.approx(beta.ppf(0.95, holding + 1, n - holding) if holding < n else 1.0)
         best = [float(np.mean([cost[:, k].argmin() == i for k in range(n)])) for i in range(3)]
-        np.testing.assert_allclose(of["best"], best)
-        assert of["place"].to_numpy().tolist() == (1 + np.argsort(order)).tolist()
+        np.testing.assert_allclose(result["best"], best)
+        assert result["place"].to_numpy().tolist() == (1 + np.argsort(order)).tolist()
 
 
 def test_what_no_variant_changes_is_equal():
     """Without friction the oil is not read."""
-    found = compare(TORQUE, TORQUE.with_(lubricant__viscosity=20.0), samples=16)
+    comparison = compare(TORQUE, TORQUE.with_(lubricant__viscosity=20.0), samples=16)
     for name in RESULTS:
-        of = found.sel(result=name)
-        assert (float(of["equal"][0, 1]), float(of["holds"]), float(of["better"].max())) == (1.0, 1.0, 0.0)
-        assert ranking(of["place"].to_numpy().tolist(), "AB") == "A = B"
-        assert str(of["sentence"].item()).startswith("A and B are equal in 100 of 100 possible machines: ")
+        result = comparison.sel(result=name)
+        assert (float(result["equal"][0, 1]), float(result["holds"]), float(result["better"].max())) == (
+            1.0,
+            1.0,
+            0.0,
+        )
+        assert ranking(result["place"].to_numpy().tolist(), "AB") == "A = B"
+        assert str(result["sentence"].item()).startswith(
+            "A and B are equal in 100 of 100 possible machines: "
+        )
 
 
 def test_a_machine_without_prediction_in_one_variant_counts_in_none():
     tables = LINEAR.with_({"uncertainty": {"mesh.stiffness": ["rectangular", "table"]}})
     plain = TORQUE.with_(gear__face_width=31.0)
-    found = compare(plain, tables, samples=16)
-    assert found.attrs["refused"] == 16 - found.sizes["sample"] == 8
-    assert found["dte_peak_to_peak"].notnull().all()
+    comparison = compare(plain, tables, samples=16)
+    assert comparison.attrs["refused"] == 16 - comparison.sizes["sample"] == 8
+    assert comparison["dte_peak_to_peak"].notnull().all()
     never = LINEAR.with_({"uncertainty": {"mesh.stiffness": ["table", "table"]}})
     with pytest.raises(NumericalError, match="Only 0 of 16 samples have a prediction in every variant"):
         compare(plain, never, samples=16)
@@ -177,14 +183,14 @@ def test_a_machine_without_prediction_in_one_variant_counts_in_none():
 def test_teeth_that_differ_add_their_own_transmission_error():
     index = [6.0] + [0.0] * (TORQUE.pinion.teeth - 1)
     wrong = TORQUE.with_({"pinion.deviations": {"index": index}})
-    found = compare(TORQUE, wrong, samples=16)
-    assert found.attrs["teeth"] == "as given"
+    comparison = compare(TORQUE, wrong, samples=16)
+    assert comparison.attrs["teeth"] == "as given"
     name = "revolution_dte_peak_to_peak"
-    like, own = found[f"{name}_given"].to_numpy()
+    like, different = comparison[f"{name}_given"].to_numpy()
     # Peaks between 32 times of a mesh cycle are those of a cubic.
-    for value, pair in ((like, TORQUE), (own, wrong)):
+    for value, pair in ((like, TORQUE), (different, wrong)):
         assert value == pytest.approx(spurcheck.steady_state(pair).attrs["dte_peak_to_peak"], rel=0.01)
-    assert float(found["holds"].sel(result=name)) == 1.0
+    assert float(comparison["holds"].sel(result=name)) == 1.0
 
 
 @pytest.mark.parametrize(
@@ -195,7 +201,7 @@ def test_none_and_all_are_said_of_none_and_all(share, words):
     assert of_hundred(share) == words
 
 
-def said(better, worse, given=(4.2e-6, 3.1e-6), place=(2, 1)):
+def said(better, worse, values=(4.2e-6, 3.1e-6), place=(2, 1)):
     """Sentence where B is better and worse in these shares."""
     shares = {
         "better": [np.array([[0.0, worse], [better, 0.0]])],
@@ -203,7 +209,7 @@ def said(better, worse, given=(4.2e-6, 3.1e-6), place=(2, 1)):
         "best": [np.array([1 - better, 1 - worse])],
         "place": [np.array(place)],
     }
-    return module._sentence("dte_peak_to_peak", np.array(given), shares, "AB")
+    return module._sentence("dte_peak_to_peak", np.array(values), shares, "AB")
 
 
 @pytest.mark.parametrize(
@@ -274,5 +280,5 @@ def test_the_stored_shares_are_those_of_plain_monte_carlo(request):
 
 @pytest.mark.parametrize("case", cases(), ids=lambda case: case.key)
 def test_each_variant_draws_its_own_inputs_where_the_case_says_so(case):
-    own = {name for name, groups in drawn(*case.variants).items() if groups == ["A", "B"]}
-    assert own == set(case.own)
+    drawn_apart = {name for name, groups in drawn(*case.variants).items() if groups == ["A", "B"]}
+    assert drawn_apart == set(case.own)

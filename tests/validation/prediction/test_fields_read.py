@@ -53,7 +53,7 @@ def moved(pair: lumped.GearPair, fields: list[str]) -> lumped.GearPair:
     changes = {}
     for path in fields:
         value = values[path]
-        name = path.rpartition(".")[2]
+        _, _, name = path.rpartition(".")
         if isinstance(value, list):
             changes[path] = [1.02 * one for one in value]
         elif pair.mesh.stiffness.whole_mesh and path in ("mesh.contact", "mesh.relief"):
@@ -75,16 +75,17 @@ def moved(pair: lumped.GearPair, fields: list[str]) -> lumped.GearPair:
 
 def numbers(pair: lumped.GearPair) -> dict[str, object]:
     """What page 1 has, bit by bit: the motion with its numbers and losses, modes, stability."""
-    found = predicted(pair)
+    prediction = predicted(pair)
     cycle = {
-        name: found.cycle[name].to_numpy().tobytes() for name in ("dte", "normal_load", "bearing_force_y_g")
+        name: prediction.cycle[name].to_numpy().tobytes()
+        for name in ("dte", "normal_load", "bearing_force_y_g")
     }
     like = pair.healthy
     return {
-        **found.numbers,
-        **found.losses,
+        **prediction.numbers,
+        **prediction.losses,
         **cycle,
-        "orders": found.bearing_orders.tobytes(),
+        "orders": prediction.bearing_orders.tobytes(),
         "modes": np.asarray(lumped.natural_frequencies(like, supports="springs")).tobytes(),
         "multipliers": floquet.gear_pair_multipliers(like, supports="springs").multipliers.tobytes(),
     }
@@ -97,7 +98,8 @@ def _with_law(name: str, law: str) -> lumped.GearPair:
 
 def differences(pair: lumped.GearPair) -> list[str]:
     """Numbers that a change of everything that the pair does not read changes."""
-    one, other = numbers(pair), numbers(moved(pair, unread(pair)))
+    one = numbers(pair)
+    other = numbers(moved(pair, unread(pair)))
     return [key for key in one if one[key] != other[key]]
 
 
@@ -135,17 +137,17 @@ def test_a_stiffness_of_the_whole_mesh_has_contact_and_profile_in_it():
     pair = PAIRS["heavily_relieved_under_load"].healthy
     profile = {"mesh.contact", "mesh.relief", "pinion.tip_relief.amount"}
     assert profile <= fields_read(pair)
-    given = pair.with_(WHOLE)
-    assert profile <= {*unread(given)}
-    assert differences(given) == []
+    whole_mesh = pair.with_(WHOLE)
+    assert profile <= {*unread(whole_mesh)}
+    assert differences(whole_mesh) == []
 
 
 def test_a_gear_on_a_shaft_is_a_body_of_its_material():
     """The rim turns against the bore, whatever the stiffness of the teeth is."""
-    known = {"pinion.mass": 4.1, "pinion.inertia": 6e-3, "gear.mass": 9.3, "gear.inertia": 5e-2}
+    bodies = {"pinion.mass": 4.1, "pinion.inertia": 6e-3, "gear.mass": 9.3, "gear.inertia": 5e-2}
     model = {"model": "rectangular", "pair_stiffness": 3e8}
     pair = PAIRS["contact_ratio_2_3_on_shafts"].with_(
-        known | {"mesh.stiffness": model, "friction.law": "none"}
+        bodies | {"mesh.stiffness": model, "friction.law": "none"}
     )
     assert {"gear.poisson_ratio", "pinion.bore"} <= fields_read(pair)
     assert "gear.density" in unread(pair)
@@ -154,8 +156,8 @@ def test_a_gear_on_a_shaft_is_a_body_of_its_material():
 
 def test_a_law_of_the_user_reads_its_table_alone():
     pair = PAIRS["fzg_c"].with_(law=lambda xi: 0.03 + 2.0 * xi, stiffness=lambda xi: 2e8 + 1e9 * xi)
-    left = unread(pair)
-    assert {"lubricant.viscosity", "friction.maximum", "pinion.roughness"} < {*left}
+    unread_fields = unread(pair)
+    assert {"lubricant.viscosity", "friction.maximum", "pinion.roughness"} < {*unread_fields}
     assert "friction.table.coefficient" in fields_read(pair)
     assert "friction.table.coefficient" not in fields_read(pair.with_(law="coulomb"))
     assert differences(pair) == []
@@ -254,10 +256,10 @@ def test_every_name_of_the_contact_and_the_settings_has_its_fields():
 ], ids=lambda model: model["model"])  # fmt: skip
 def test_a_stiffness_model_reads_what_it_says(model):
     pair = PAIRS["larger_gear_drives_contact_lost"].with_({"mesh.stiffness": model})
-    own = pair_stiffness(pair).coefficients.tobytes()
+    coefficients = pair_stiffness(pair).coefficients.tobytes()
     for field in sorted(TOOTH_FORM):
         for one in fields_of(field):
             other = moved(pair, [one])
-            assert (pair_stiffness(other).coefficients.tobytes() != own) == (
+            assert (pair_stiffness(other).coefficients.tobytes() != coefficients) == (
                 field in pair.mesh.stiffness.reads
             ), one

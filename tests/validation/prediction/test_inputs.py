@@ -48,23 +48,23 @@ def input_of(pair: lumped.GearPair, field: str):
     ("mesh.stiffness_factor", "+- 8 %", 0.92, 1.08),
 ])  # fmt: skip
 def test_ranges_are_read_in_the_units_of_the_field(field, spread, low, high):
-    found = input_of(stated(field, spread), field)
-    assert (found.low, found.high) == pytest.approx((low, high), rel=1e-12)
+    spread_input = input_of(stated(field, spread), field)
+    assert (spread_input.low, spread_input.high) == pytest.approx((low, high), rel=1e-12)
 
 
 def test_a_wide_range_of_positive_values_is_log_uniform_and_a_narrow_one_uniform():
-    wide, narrow = (
+    wide_range, narrow_range = (
         input_of(stated("mesh.damping_ratio", s), "mesh.damping_ratio")
         for s in ("0.02 .. 0.08", "0.04 .. 0.06")
     )
-    assert wide.at(0.5) == pytest.approx(0.04)  # the geometric mean
-    assert narrow.at(0.5) == pytest.approx(0.05)
+    assert wide_range.at(0.5) == pytest.approx(0.04)  # the geometric mean
+    assert narrow_range.at(0.5) == pytest.approx(0.05)
 
 
 def test_a_choice_takes_each_of_its_values_equally_often():
-    found = input_of(stated("mesh.stiffness", ["energy", "parabolic"]), "mesh.stiffness")
-    assert [found.at(u) for u in (0.0, 0.49, 0.51, 1.0)] == ["energy", "energy", "parabolic", "parabolic"]
-    assert PAIR.with_(found.changes(0.9)).mesh.stiffness.model == "parabolic"
+    choice = input_of(stated("mesh.stiffness", ["energy", "parabolic"]), "mesh.stiffness")
+    assert [choice.at(u) for u in (0.0, 0.49, 0.51, 1.0)] == ["energy", "energy", "parabolic", "parabolic"]
+    assert PAIR.with_(choice.changes(0.9)).mesh.stiffness.model == "parabolic"
 
 
 def test_defaults_are_for_values_that_are_assumed_and_for_no_others():
@@ -80,8 +80,8 @@ def test_defaults_are_for_values_that_are_assumed_and_for_no_others():
 
 
 def test_what_the_file_states_takes_the_place_of_a_default():
-    found = input_of(stated("mesh.damping_ratio", "0.04 .. 0.06"), "mesh.damping_ratio")
-    assert (found.written, found.reason) == ("0.04 .. 0.06", "stated in the file")
+    damping = input_of(stated("mesh.damping_ratio", "0.04 .. 0.06"), "mesh.damping_ratio")
+    assert (damping.written, damping.reason) == ("0.04 .. 0.06", "stated in the file")
 
 
 PLASTIC = {"gears.youngs_modulus": "3 GPa", "gears.density": 1400}
@@ -102,24 +102,28 @@ def test_an_assumed_value_is_the_middle_of_its_range(name):
     assert {"mesh.damping_ratio", "gears.roughness", "pinion.inertia"} < {one.field for one in numbers}
     for one in numbers:
         for part in one.parts:
-            own = values.get(part.field, 1.0)
+            assumed_value = values.get(part.field, 1.0)
             if part.field.endswith(".tip_alteration"):
-                own = 1e3 * pair.tip_alteration
+                assumed_value = 1e3 * pair.tip_alteration
             if part.field.endswith((".inertia", ".mass")):
                 gear, _, key = part.field.partition(".")
-                own = getattr(bodies(pair), f"{key}_{gear}")
-            assert part.at(0.5) == pytest.approx(own, rel=1e-9, abs=1e-15), part.field
+                assumed_value = getattr(bodies(pair), f"{key}_{gear}")
+            assert part.at(0.5) == pytest.approx(assumed_value, rel=1e-9, abs=1e-15), part.field
 
 
 @pytest.mark.parametrize("name", NEW)
 def test_the_assumed_friction_law_is_between_the_others_and_the_stiffness_has_both_methods(name):
     inputs = {one.field: one for one in uncertain_inputs(NEW[name])}
-    own = NEW[name].friction.law
+    assumed_law = NEW[name].friction.law
     mean = {
         law: GEAR_AXES["friction_coefficient"].own(NEW[name].with_(law=law))
         for law in inputs["friction.law"].choices
     }
-    assert sum(mu < mean[own] for mu in mean.values()) == sum(mu > mean[own] for mu in mean.values()) == 1
+    assert (
+        sum(mu < mean[assumed_law] for mu in mean.values())
+        == sum(mu > mean[assumed_law] for mu in mean.values())
+        == 1
+    )
     assert set(inputs["mesh.stiffness"].choices) >= {"finite_elements", "energy"}
 
 
@@ -130,12 +134,12 @@ def test_both_directions_of_a_bearing_and_both_gears_flanks_are_one_input():
     )
     for gear in ("pinion", "gear"):
         one = input_of(pair, f"bearings.{gear}.stiffness")
-        own = getattr(pair.bearings, gear)
+        bearing = getattr(pair.bearings, gear)
         for share in (0.0, 0.3, 1.0):
-            moved = getattr(varied(pair, [(one, share)]).bearings, gear)
-            factor = moved.loa_stiffness / own.loa_stiffness
+            varied_bearing = getattr(varied(pair, [(one, share)]).bearings, gear)
+            factor = varied_bearing.loa_stiffness / bearing.loa_stiffness
             assert factor == pytest.approx(0.5 * 4.0**share)
-            assert moved.oloa_stiffness / own.oloa_stiffness == pytest.approx(factor)
+            assert varied_bearing.oloa_stiffness / bearing.oloa_stiffness == pytest.approx(factor)
     rough = varied(pair, [(input_of(pair, "gears.roughness"), 1.0)])
     ratios = [getattr(rough, g).roughness / getattr(pair, g).roughness for g in ("pinion", "gear")]
     assert ratios == pytest.approx([1.5, 1.5])
@@ -152,10 +156,10 @@ def test_a_direction_whose_stiffness_is_known_does_not_move():
 def test_mass_and_inertia_of_an_assumed_blank_move_together_and_those_of_a_known_one_do_not():
     pair = NEW["large ratio"]
     heavy = bodies(varied(pair, [(input_of(pair, "gear.inertia"), 1.0)]))
-    own = bodies(pair)
-    assert heavy.inertia_gear / own.inertia_gear == pytest.approx(1.25)
-    assert heavy.mass_gear / own.mass_gear == pytest.approx(1.25)
-    assert heavy.mass_pinion == own.mass_pinion
+    assumed = bodies(pair)
+    assert heavy.inertia_gear / assumed.inertia_gear == pytest.approx(1.25)
+    assert heavy.mass_gear / assumed.mass_gear == pytest.approx(1.25)
+    assert heavy.mass_pinion == assumed.mass_pinion
     drawn = but_known(pair, "gear.bore")
     assert "gear.inertia" not in {one.field for one in uncertain_inputs(drawn)}
     weighed = pair.with_({"gear.mass": 2.0, "gear.inertia": 3e-3})
@@ -186,11 +190,11 @@ def test_every_model_of_the_stiffness_and_both_contacts_are_in_the_range_or_besi
 def test_beside_a_stiffness_of_the_whole_mesh_stands_nothing_that_it_decides(stiffness):
     """It is used as given: another contact is none of its forms, and its size and model are known."""
     for pair in NEW.values():
-        given = pair.with_(stiffness=stiffness)
-        assert forms_beside(given) == {}
-        left = {part.field for one in uncertain_inputs(given) for part in one.parts}
-        assert not {"mesh.stiffness", "mesh.stiffness_factor", "mesh.contact", "mesh.relief"} & left
-        assert not any("_relief" in field for field in left)
+        whole_mesh = pair.with_(stiffness=stiffness)
+        assert forms_beside(whole_mesh) == {}
+        fields = {part.field for one in uncertain_inputs(whole_mesh) for part in one.parts}
+        assert not {"mesh.stiffness", "mesh.stiffness_factor", "mesh.contact", "mesh.relief"} & fields
+        assert not any("_relief" in field for field in fields)
     assert len(forms_beside(NEW["wind"])) > 0
 
 
@@ -233,30 +237,30 @@ def test_ranges_survive_the_parameter_file():
 def test_words_of_sources_change_neither_counts_nor_ranges(words):
     """The file of a new pair, into whose [sources] a user writes of every value what he likes."""
     pair = new_pair("23/81", 3.0, 26.0, 2900, 210.0, oil="vg150")
-    given, assumed = given_and_assumed(pair)
-    assert given == 8
-    assert assumed > 20
+    given_count, assumed_count = given_and_assumed(pair)
+    assert given_count == 8
+    assert assumed_count > 20
     text = pair.with_({"sources": dict.fromkeys(leaf_paths(pair), words)}).to_toml()
-    said = lumped.load_gear_pair(tomllib.loads(text))
-    assert given_and_assumed(said) == (given, assumed)
-    assert repr(uncertain_inputs(said)) == repr(uncertain_inputs(pair))  # a choice has NaN as its ends
-    assert source_of(said, "mesh.damping_ratio") == words
-    known = known_sizes(said.with_({"assumed": {}}))
-    assert given_and_assumed(known) == (len(fields_read(known)), 0)
-    assert uncertain_inputs(known) == ()
+    stated = lumped.load_gear_pair(tomllib.loads(text))
+    assert given_and_assumed(stated) == (given_count, assumed_count)
+    assert repr(uncertain_inputs(stated)) == repr(uncertain_inputs(pair))  # a choice has NaN as its ends
+    assert source_of(stated, "mesh.damping_ratio") == words
+    known_pair = known_sizes(stated.with_({"assumed": {}}))
+    assert given_and_assumed(known_pair) == (len(fields_read(known_pair)), 0)
+    assert uncertain_inputs(known_pair) == ()
 
 
 def test_what_no_chosen_law_reads_is_neither_counted_nor_varied():
     pair = unlike_pair("rack_25_degrees_always_pushing").with_({"friction.law": "xu_kahraman"})
-    own = read_values(pair)
-    assert sum(given_and_assumed(pair)) == len(own) < len(leaf_paths(pair)) - 7
+    values = read_values(pair)
+    assert sum(given_and_assumed(pair)) == len(values) < len(leaf_paths(pair)) - 7
     # The stiffness of the teeth may be that of their form, which has a fillet.
-    assert own - fields_read(pair) == {"basic_rack.fillet_radius_coefficient"}
+    assert values - fields_read(pair) == {"basic_rack.fillet_radius_coefficient"}
     fields = {one.field for one in uncertain_inputs(pair)}
     assert {"lubricant.viscosity", "gears.roughness"} < fields
     assert "mesh.backlash" not in fields
-    given = {"friction.law": "coulomb", "friction.coefficient": 0.06}
-    fields = {one.field for one in uncertain_inputs(pair.with_(given))}
+    coulomb = {"friction.law": "coulomb", "friction.coefficient": 0.06}
+    fields = {one.field for one in uncertain_inputs(pair.with_(coulomb))}
     assert not {"lubricant.viscosity", "gears.roughness", "pinion.roughness"} & fields
     assert given_and_assumed(pair, contact_lost=True)[1] == given_and_assumed(pair)[1] + 1
 
@@ -302,20 +306,20 @@ def test_the_factor_scales_the_stiffness_and_what_follows_from_it():
 def test_an_assumed_tip_ranges_about_the_one_that_keeps_the_clearance(made, more):
     """0.02 modules up and down on the radius, each gear for itself; a tip that is given does not move."""
     pair = new_pair(*made, more)
-    found = {one.field: one for one in uncertain_inputs(pair) if "tip" in one.field}
-    given = {field.removesuffix(".tip_alteration") for field in more if "tip" in field}
-    assert set(found) == {f"{gear}.tip_alteration" for gear in ("pinion", "gear") if gear not in given}
+    tips = {one.field: one for one in uncertain_inputs(pair) if "tip" in one.field}
+    stated_tips = {field.removesuffix(".tip_alteration") for field in more if "tip" in field}
+    assert set(tips) == {f"{gear}.tip_alteration" for gear in ("pinion", "gear") if gear not in stated_tips}
     module = 1e3 * pair.basic_rack.module
-    for field, one in found.items():
+    for field, one in tips.items():
         gear = field.partition(".")[0]
-        which, other = (0, 1) if gear == "pinion" else (1, 0)
+        gear_index, mate_index = (0, 1) if gear == "pinion" else (1, 0)
         assert (one.low + one.high) / 2.0 == pytest.approx(1e3 * pair.tip_alteration, abs=1e-12)
         assert one.high - one.low == pytest.approx(0.04 * module, rel=1e-9)
-        for share, off in ((0.01, -0.02 * 8 / 9), (0.5, 0.0), (0.99, 0.02 * 8 / 9)):
-            moved = pair.with_(one.changes(share))
-            radius = moved.wheels[which].tip_radius - pair.wheels[which].tip_radius
-            assert 1e3 * radius == pytest.approx(off * module, abs=1e-9)
-            assert moved.wheels[other].tip_radius == pair.wheels[other].tip_radius
+        for share, change in ((0.01, -0.02 * 8 / 9), (0.5, 0.0), (0.99, 0.02 * 8 / 9)):
+            varied_pair = pair.with_(one.changes(share))
+            radius = varied_pair.wheels[gear_index].tip_radius - pair.wheels[gear_index].tip_radius
+            assert 1e3 * radius == pytest.approx(change * module, abs=1e-9)
+            assert varied_pair.wheels[mate_index].tip_radius == pair.wheels[mate_index].tip_radius
 
 
 def test_the_range_of_a_tip_is_half_of_the_tolerance_h11():
@@ -335,29 +339,29 @@ def test_the_range_of_a_tip_is_half_of_the_tolerance_h11():
 def test_a_stated_tip_replaces_the_default_and_takes_few_values_too():
     pair = new_pair("21/34", 3.0, 25, 2000, 150)
     pair = pair.with_({"pinion.tip_diameter": 69.0, "uncertainty": {"pinion.tip_diameter": "+- 0.2 mm"}})
-    found = {one.field: one for one in uncertain_inputs(pair)}
-    assert "pinion.tip_alteration" not in found
-    one = found["pinion.tip_diameter"]
+    inputs = {one.field: one for one in uncertain_inputs(pair)}
+    assert "pinion.tip_alteration" not in inputs
+    one = inputs["pinion.tip_diameter"]
     values = {one.at(share) for share in np.linspace(0.0, 1.0, 400)}
     assert len(values) == 9
     assert (min(values), max(values)) == pytest.approx((69.0 - 0.2 * 8 / 9, 69.0 + 0.2 * 8 / 9))
-    assert len({found["mesh.damping_ratio"].at(share) for share in np.linspace(0.0, 1.0, 400)}) == 400
+    assert len({inputs["mesh.damping_ratio"].at(share) for share in np.linspace(0.0, 1.0, 400)}) == 400
 
 
 def test_the_finite_elements_of_a_tip_are_solved_once_for_each_value(monkeypatch):
     """Samples of 32 machines need no more solutions than the values of both tips."""
     solved = []
-    own = finite_elements.flank_compliance
+    solve = finite_elements.flank_compliance
     monkeypatch.setattr(
         finite_elements,
         "flank_compliance",
-        lambda body: solved.append((body.profile.teeth, body.tip)) or own(body),
+        lambda body: solved.append((body.profile.teeth, body.tip)) or solve(body),
     )
     pair = new_pair("23/29", 2.0, 15, 1200, 40)
     inputs = [one for one in uncertain_inputs(pair) if "tip" in one.field]
     for point in sobol_points(np.zeros(2), 64, 1):
-        moved = varied(pair, list(zip(inputs, map(float, point), strict=True)))
-        for tooth in finite_elements.elastic_teeth(moved):
+        varied_pair = varied(pair, list(zip(inputs, map(float, point), strict=True)))
+        for tooth in finite_elements.elastic_teeth(varied_pair):
             assert tooth.flank is not None
     assert {teeth: len({round(tip, 9) for z, tip in solved if z == teeth}) for teeth in (23, 29)} == {
         23: 9,
@@ -396,28 +400,30 @@ def test_the_shares_of_profile_shifts_that_a_centre_distance_asks_for_are_varied
         assert sum(machine.profile_shifts) == pytest.approx(total, abs=1e-9)
         assert machine.geometry.centre_distance == pair.geometry.centre_distance
         assert machine.profile_shifts != pair.profile_shifts
-    known = pair.with_({"gear.profile_shift": pair.profile_shifts[1]})
-    assert "pinion.profile_shift" not in {one.field for one in uncertain_inputs(known)}
+    stated = pair.with_({"gear.profile_shift": pair.profile_shifts[1]})
+    assert "pinion.profile_shift" not in {one.field for one in uncertain_inputs(stated)}
 
 
 def test_gears_stay_as_they_are_cut_where_the_centre_distance_has_a_tolerance():
     pair = new_pair("23/61", 3.0, 25.0, 1200.0, 90.0, {"centre_distance": 127.0, "mesh.stiffness": "energy"})
     pair = pair.with_(uncertainty={"centre_distance": "+- 0.05 mm"})
     one = {one.field: one for one in uncertain_inputs(pair)}["centre_distance"]
-    wide = varied(pair, [(one, 0.999)])
-    assert wide.geometry.centre_distance > pair.geometry.centre_distance + 0.04e-3
-    assert wide.profile_shifts == pair.profile_shifts
-    assert wide.geometry.normal_backlash > pair.geometry.normal_backlash + 0.02e-3
+    apart = varied(pair, [(one, 0.999)])
+    assert apart.geometry.centre_distance > pair.geometry.centre_distance + 0.04e-3
+    assert apart.profile_shifts == pair.profile_shifts
+    assert apart.geometry.normal_backlash > pair.geometry.normal_backlash + 0.02e-3
 
 
 def test_an_assumed_inertia_of_motor_or_load_is_varied_and_a_known_one_is_not():
     pair = unlike_pair("contact_ratio_2_3_on_shafts")
     fields = {"shafts.motor.inertia", "shafts.load.inertia"}
-    own = {path: value for path, value in leaf_paths(pair).items() if path in fields}
-    assert set(own) == fields
-    assumed = pair.with_({"assumed": pair.assumed.to_mapping() | own})
-    found = {one.field: one for one in uncertain_inputs(assumed) if one.field in fields}
-    assert {(one.low / own[field], one.high / own[field]) for field, one in found.items()} == {(0.5, 2.0)}
-    assert set(found) == fields
-    known = {path: value for path, value in pair.assumed.to_mapping().items() if path not in fields}
-    assert not fields & {one.field for one in uncertain_inputs(pair.with_({"assumed": known}))}
+    inertias = {path: value for path, value in leaf_paths(pair).items() if path in fields}
+    assert set(inertias) == fields
+    assumed = pair.with_({"assumed": pair.assumed.to_mapping() | inertias})
+    ranges = {one.field: one for one in uncertain_inputs(assumed) if one.field in fields}
+    assert {(one.low / inertias[field], one.high / inertias[field]) for field, one in ranges.items()} == {
+        (0.5, 2.0)
+    }
+    assert set(ranges) == fields
+    assumptions = {path: value for path, value in pair.assumed.to_mapping().items() if path not in fields}
+    assert not fields & {one.field for one in uncertain_inputs(pair.with_({"assumed": assumptions}))}

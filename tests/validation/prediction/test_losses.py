@@ -18,15 +18,15 @@ def driving(pair):
 
 def balance_of(pair):
     """Mean powers [W] of the exact periodic multibody motion, by its own first law."""
-    found = multibody.motion_balance(pair, multibody.steady_state(pair, supports="springs"), 1e-9)
+    balance = multibody.motion_balance(pair, multibody.steady_state(pair, supports="springs"), 1e-9)
     period = pair.geometry.mesh_period
-    by_difference = found.driving - found.braking - found.friction - found.bearings
+    by_difference = balance.driving - balance.braking - balance.friction - balance.bearings
     # Nothing is stored in a motion that repeats, so the dampers of the teeth take what is left.
-    assert found.mesh_damping == pytest.approx(by_difference, abs=1e-6 * found.friction)
+    assert balance.mesh_damping == pytest.approx(by_difference, abs=1e-6 * balance.friction)
     return {
-        "sliding": found.friction / period,
-        "tooth dampers": found.mesh_damping / period,
-        "bearings": found.bearings / period,
+        "sliding": balance.friction / period,
+        "tooth dampers": balance.mesh_damping / period,
+        "bearings": balance.bearings / period,
     }
 
 
@@ -41,9 +41,9 @@ CLIPPED = new_pair("31/57", module=3, face_width=25, speed=29500, torque=150, ch
 ], ids=lambda pair: pair.name)  # fmt: skip
 def test_dampers_and_bearings_take_what_the_power_balance_of_the_exact_motion_leaves(pair):
     """Driving power less braking power and sliding. Finite motions leave 1.0 and 1.7 %."""
-    found = predicted(pair)
-    sliding = -float(found.cycle["friction_power"].sum("pair").mean())
-    rest = (1.0 - found.efficiency) * driving(pair) - sliding
+    prediction = predicted(pair)
+    sliding = -float(prediction.cycle["friction_power"].sum("pair").mean())
+    rest = (1.0 - prediction.efficiency) * driving(pair) - sliding
     expected = balance_of(pair)
     assert rest == pytest.approx(expected["tooth dampers"] + expected["bearings"], rel=0.03)
 
@@ -52,9 +52,11 @@ def test_dampers_and_bearings_take_what_the_power_balance_of_the_exact_motion_le
 def test_the_efficiency_of_a_multibody_motion_is_that_of_its_own_power_balance(name):
     """On springs; without the loss of dampers and bearings 4 and 8 % of the loss are missing."""
     pair = unlike_pair(name)
-    found = measured(pair, multibody.steady_state(pair, supports="springs"), Motion.SECOND)
+    prediction = measured(pair, multibody.steady_state(pair, supports="springs"), Motion.SECOND)
     # The quadrature of sliding over samples leaves some 1e-4 where friction jumps.
-    assert (1.0 - found.efficiency) * driving(pair) == pytest.approx(sum(balance_of(pair).values()), rel=1e-3)
+    assert (1.0 - prediction.efficiency) * driving(pair) == pytest.approx(
+        sum(balance_of(pair).values()), rel=1e-3
+    )
 
 
 def test_losses_of_the_motion_with_unilateral_contact_are_those_of_the_linear_one_where_they_agree():
@@ -62,20 +64,22 @@ def test_losses_of_the_motion_with_unilateral_contact_are_those_of_the_linear_on
     pair = lumped.load_gear_pair("kahraman_blankenship_50_50").with_(
         {"mesh.contact": "loaded", "operating.pinion_speed": 700.0}
     )
-    found = predicted(pair)
+    prediction = predicted(pair)
     linear = lumped.steady_state(pair)
     lost = sum(float(linear.attrs[k]) for k in ("power_sliding", "power_tooth_dampers", "power_bearings"))
-    assert 1.0 - found.efficiency == pytest.approx(lost / driving(pair), rel=0.02)
+    assert 1.0 - prediction.efficiency == pytest.approx(lost / driving(pair), rel=0.02)
 
 
 @pytest.mark.parametrize("name", [*UNLIKE, *lumped.preset_names()])
 def test_the_parts_of_the_loss_add_up_to_it(name):
     """The losses by place are the whole of what the efficiency leaves."""
-    found = predicted(unlike_pair(name) if name in UNLIKE else lumped.load_gear_pair(name))
-    parts = found.losses
+    prediction = predicted(unlike_pair(name) if name in UNLIKE else lumped.load_gear_pair(name))
+    parts = prediction.losses
     assert {"sliding", "tooth_dampers", "bearings"} <= set(parts)
     assert all(power >= 0.0 for power in parts.values())
-    assert sum(parts.values()) == pytest.approx((1.0 - found.efficiency) * driving(found.pair), rel=1e-9)
+    assert sum(parts.values()) == pytest.approx(
+        (1.0 - prediction.efficiency) * driving(prediction.pair), rel=1e-9
+    )
     # The one part that a sampled motion shows by itself; the samples leave some 1e-4 where friction jumps.
-    sliding = -found.cycle["friction_power"].sum("pair").to_numpy()
+    sliding = -prediction.cycle["friction_power"].sum("pair").to_numpy()
     assert parts["sliding"] == pytest.approx(np.mean(sliding), rel=1e-3)

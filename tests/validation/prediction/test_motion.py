@@ -63,21 +63,21 @@ def test_with_such_a_relief_it_is_the_exact_motion_where_the_linear_one_pulls_no
 @pytest.mark.parametrize("name", ["rack_25_degrees_always_pushing", "larger_gear_drives_contact_lost"])
 def test_in_fixed_windows_teeth_that_push_all_the_time_move_as_in_the_linear_motion(name):
     pair = unlike_pair(name).with_({"mesh.contact": "prescribed"})
-    found = predicted(pair)
+    prediction = predicted(pair)
     linear = lumped.steady_state(pair)
     assert float(linear["normal_load"].where(linear["contact"] > 0).min()) > 0.0
-    assert found.motion is Motion.UNILATERAL
-    assert found.peak_to_peak == pytest.approx(float(linear.attrs["dte_peak_to_peak"]), rel=1e-6)
+    assert prediction.motion is Motion.UNILATERAL
+    assert prediction.peak_to_peak == pytest.approx(float(linear.attrs["dte_peak_to_peak"]), rel=1e-6)
 
 
 def test_contact_loss_is_that_of_the_total_mesh_force():
     """One relieved pair begins to carry late: that is load sharing, and no contact loss."""
     pair = loaded("nasa_28_28")
-    found = predicted(pair)
-    loads = found.cycle["normal_load"].to_numpy()
+    prediction = predicted(pair)
+    loads = prediction.cycle["normal_load"].to_numpy()
     assert loads.min() == 0.0  # a pair is apart while it is on the path
-    assert found.least_force > 0.7
-    assert not found.contact_lost
+    assert prediction.least_force > 0.7
+    assert not prediction.contact_lost
     # Friction that varies in a long cycle swings a free train about its mean speed, at which it loses power.
     slow = predicted(pair.with_({"operating.pinion_speed": 30.0})).cycle
     sliding = -float(slow["friction_power"].sum("pair").mean())
@@ -91,11 +91,11 @@ def test_losses_of_fast_gears_are_those_of_the_torques_of_the_multibody_model():
     """
     tips = {f"{gear}.{one}": None for gear in ("pinion", "gear") for one in ("tip_relief", "tip_diameter")}
     sizes = {"pinion.teeth": 31, "gear.teeth": 57, "centre_distance": None, "operating.pinion_speed": 29500}
-    found = predicted(loaded("nasa_28_28").with_(tips | sizes))
+    prediction = predicted(loaded("nasa_28_28").with_(tips | sizes))
     names = [f"{name}{rate}" for rate in ("", "_dot") for name in COORDINATES]
-    start = np.array([found.cycle[name].values[0] for name in names])
-    exact = multibody.steady_state(found.pair, initial=start)
-    assert 1.0 - found.efficiency == pytest.approx(1.0 - exact.attrs["mesh_efficiency"], rel=5e-3)
+    start = np.array([prediction.cycle[name].values[0] for name in names])
+    exact = multibody.steady_state(prediction.pair, initial=start)
+    assert 1.0 - prediction.efficiency == pytest.approx(1.0 - exact.attrs["mesh_efficiency"], rel=5e-3)
 
 
 def test_a_motion_that_newton_does_not_find_is_the_one_a_run_settles_to():
@@ -108,10 +108,10 @@ def test_a_motion_that_newton_does_not_find_is_the_one_a_run_settles_to():
         },
     )  # fmt: skip
     pair = lumped.load_gear_pair(tomllib.loads(text))
-    found = predicted(pair)
-    assert found.motion is Motion.SETTLED
-    assert found.contact_lost
-    assert found.stable
+    prediction = predicted(pair)
+    assert prediction.motion is Motion.SETTLED
+    assert prediction.contact_lost
+    assert prediction.stable
     # Continued along its branch from 13000 rpm, where Newton finds it, the motion is the same.
     start = floquet.periodic_orbit(pair.with_({"operating.pinion_speed": 13000.0}))
     for rpm in np.linspace(13000.0, 12000.0, 11)[1:]:
@@ -119,15 +119,15 @@ def test_a_motion_that_newton_does_not_find_is_the_one_a_run_settles_to():
     low, high = start.dte_range
     assert np.diff(settled_orbit(pair).dte_range) == pytest.approx(high - low, rel=1e-6)
     # Contact and dampers that follow the momentary load move it by 0.2 %.
-    assert found.peak_to_peak == pytest.approx(high - low, rel=0.005)
+    assert prediction.peak_to_peak == pytest.approx(high - low, rel=0.005)
 
 
 def test_an_unstable_motion_of_one_cycle_is_left_for_the_one_a_run_settles_to():
     changes = {"operating.pinion_speed": 4550.0, "mesh.damping_ratio": 0.02}
     pair = lumped.load_gear_pair("nasa_art_25_31").with_(changes)
     assert not floquet.periodic_orbit(pair).stable
-    found = predicted(pair)
-    assert (found.motion, found.mesh_cycles, found.stable) == (Motion.SETTLED, 2, True)
+    prediction = predicted(pair)
+    assert (prediction.motion, prediction.mesh_cycles, prediction.stable) == (Motion.SETTLED, 2, True)
 
 
 @pytest.mark.parametrize("name", ["heavily_relieved_under_load", "rack_25_degrees_always_pushing"])
@@ -146,10 +146,10 @@ def test_a_pair_in_a_tongue_of_the_linear_form_may_be_stable():
     changes = {"friction.law": "none", "mesh.damping_ratio": 0.001, "operating.pinion_speed": "6350 rpm"}
     pair = loaded("nasa_28_28").with_(changes)
     assert lumped.steady_state(pair).attrs["spectral_radius"] > 1.05
-    found = predicted(pair)
-    assert found.stable
+    prediction = predicted(pair)
+    assert prediction.stable
     exact = multibody.monodromy(pair, fidelity="exact").spectral_radius
-    assert found.cycle.attrs["spectral_radius"] == pytest.approx(exact, rel=1e-3)
+    assert prediction.cycle.attrs["spectral_radius"] == pytest.approx(exact, rel=1e-3)
 
 
 @pytest.mark.parametrize(("name", "changes", "motion"), [
@@ -164,8 +164,8 @@ def test_a_pair_in_a_tongue_of_the_linear_form_may_be_stable():
 def test_the_motion_of_a_slow_fast_light_or_undamped_pair_is_named(name, changes, motion):
     """Where none with unilateral contact is found the linear one stands in, and the reason is told."""
     pair = unlike_pair(name) if name in UNLIKE else lumped.load_gear_pair(name)
-    found = predicted(pair.with_(changes))
-    assert found.motion is motion
-    assert bool(found.reason) == (motion is Motion.LINEAR)
-    assert found.stable
-    assert found.cycle.attrs["contact"] == ("linear" if motion is Motion.LINEAR else "unilateral")
+    prediction = predicted(pair.with_(changes))
+    assert prediction.motion is motion
+    assert bool(prediction.reason) == (motion is Motion.LINEAR)
+    assert prediction.stable
+    assert prediction.cycle.attrs["contact"] == ("linear" if motion is Motion.LINEAR else "unilateral")

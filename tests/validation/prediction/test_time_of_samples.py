@@ -38,11 +38,11 @@ class Clock:
 
     def __init__(self, monkeypatch, where, name="_numbers"):
         self.now = 1000.0
-        own = getattr(where, name)
+        function = getattr(where, name)
 
         def slow(*arguments, **options):
             self.now += 7.0
-            return own(*arguments, **options)
+            return function(*arguments, **options)
 
         monkeypatch.setattr(where, name, slow)
         monkeypatch.setattr(deadline.time, "process_time", lambda: self.now)
@@ -53,16 +53,16 @@ def test_samples_end_with_the_time_and_are_the_first_of_all(monkeypatch):
     every = uncertainty(LINEAR, 64, seed=3)
     assert (every.attrs["taken"], every.attrs["alone"], every.attrs["seconds"]) == (64, 1, math.inf)
     Clock(monkeypatch, module)
-    found = uncertainty(LINEAR, 64, seed=3, seconds=300.0)
-    assert {name: found.attrs[name] for name in ("taken", "asked", "refused", "alone", "seconds")} == {
+    ranges = uncertainty(LINEAR, 64, seed=3, seconds=300.0)
+    assert {name: ranges.attrs[name] for name in ("taken", "asked", "refused", "alone", "seconds")} == {
         "taken": 40, "asked": 64, "refused": 0, "alone": 1, "seconds": 300.0,
     }  # fmt: skip
-    np.testing.assert_array_equal(found["dte_peak_to_peak"], every["dte_peak_to_peak"][:40])
+    np.testing.assert_array_equal(ranges["dte_peak_to_peak"], every["dte_peak_to_peak"][:40])
     # Proportional to the torque: percentiles at their shares of +- 4 %, to the unevenness of 40 points.
-    given = found.attrs["given_dte_peak_to_peak"]
-    expected = given * (1.0 + 0.04 * (2.0 * np.array([0.05, 0.5, 0.95]) - 1.0))
-    np.testing.assert_allclose(found["dte_peak_to_peak_percentile"], expected, rtol=2.0 * 0.08 / 40)
-    assert found["dte_peak_to_peak_form"].isnull().all()  # no time was left for other forms
+    as_given = ranges.attrs["given_dte_peak_to_peak"]
+    expected = as_given * (1.0 + 0.04 * (2.0 * np.array([0.05, 0.5, 0.95]) - 1.0))
+    np.testing.assert_allclose(ranges["dte_peak_to_peak_percentile"], expected, rtol=2.0 * 0.08 / 40)
+    assert ranges["dte_peak_to_peak_form"].isnull().all()  # no time was left for other forms
     assert every["dte_peak_to_peak_form"].notnull().any()
 
 
@@ -81,30 +81,30 @@ def test_first_points_fill_the_space_more_evenly_than_random_ones():
 def test_too_few_samples_make_no_range(monkeypatch):
     """Of 100 s: 7 + 14, then samples at 21, ..., 98: 12 of them, and 32 are a range."""
     Clock(monkeypatch, module)
-    found = uncertainty(LINEAR, 64, seed=3, seconds=100.0)
-    assert (found.attrs["taken"], found.sizes["sample"]) == (12, 12)
+    ranges = uncertainty(LINEAR, 64, seed=3, seconds=100.0)
+    assert (ranges.attrs["taken"], ranges.sizes["sample"]) == (12, 12)
     for name in ("dte_peak_to_peak_percentile", "dte_peak_to_peak_interval", "efficiency_rank_correlation"):
-        assert found[name].isnull().all()
-    assert found["dte_peak_to_peak_swing"].notnull().all()
-    assert [least_samples(asked) for asked in (16, 48, 64, 128, 4096)] == [8, 24, 32, 32, 32]
+        assert ranges[name].isnull().all()
+    assert ranges["dte_peak_to_peak_swing"].notnull().all()
+    assert [least_samples(samples) for samples in (16, 48, 64, 128, 4096)] == [8, 24, 32, 32, 32]
 
 
 def test_inputs_alone_take_a_third_of_the_time(monkeypatch):
     """Of 97 s: 7 as given, then a third of 90: the third input begins at 28 of 30 s, the fourth does not."""
     Clock(monkeypatch, module)
-    found = uncertainty(FOUR, 16, seconds=97.0)
-    assert (found.attrs["alone"], found.sizes["input"]) == (3, 4)
-    known = found["dte_peak_to_peak_swing"].notnull().all("end").to_numpy()
-    assert known.tolist() == [True, True, True, False]
-    assert found.attrs["taken"] == math.ceil((97 - 7 - 42) / 7)
-    assert found["value"].notnull().all()  # the samples move all inputs
+    ranges = uncertainty(FOUR, 16, seconds=97.0)
+    assert (ranges.attrs["alone"], ranges.sizes["input"]) == (3, 4)
+    computed = ranges["dte_peak_to_peak_swing"].notnull().all("end").to_numpy()
+    assert computed.tolist() == [True, True, True, False]
+    assert ranges.attrs["taken"] == math.ceil((97 - 7 - 42) / 7)
+    assert ranges["value"].notnull().all()  # the samples move all inputs
 
 
 def test_no_time_at_all_gives_the_result_as_given():
-    found = uncertainty(FOUR, 128, seconds=1e-9)
-    assert (found.attrs["taken"], found.attrs["alone"], found.sizes["sample"]) == (0, 0, 0)
-    assert found.attrs["given_dte_peak_to_peak"] > 0.0
-    assert found["dte_peak_to_peak_percentile"].isnull().all()
+    ranges = uncertainty(FOUR, 128, seconds=1e-9)
+    assert (ranges.attrs["taken"], ranges.attrs["alone"], ranges.sizes["sample"]) == (0, 0, 0)
+    assert ranges.attrs["given_dte_peak_to_peak"] > 0.0
+    assert ranges["dte_peak_to_peak_percentile"].isnull().all()
     with pytest.raises(ParameterError, match="seconds"):
         uncertainty(FOUR, 128, seconds=0.0)
 
@@ -112,48 +112,48 @@ def test_no_time_at_all_gives_the_result_as_given():
 def test_samples_without_a_motion_of_their_own_are_counted(monkeypatch):
     """Every third has no prediction, every second the linear one."""
     count = [0]
-    own = module.predicted
-    given = uncertainty(LINEAR, 16)
+    predict = module.predicted
+    every_sample = uncertainty(LINEAR, 16)
     assert FLAGS[-1] == "linear"
-    assert given.attrs["linear"] == given.attrs["refused"] == 0
+    assert every_sample.attrs["linear"] == every_sample.attrs["refused"] == 0
 
     def third(pair):
         count[0] += 1
         if count[0] > 3 and count[0] % 3 == 0:  # after the inputs as given, and both ends
             raise module.NumericalError("no motion")
         motion = module.Motion.LINEAR if count[0] % 2 else module.Motion.UNILATERAL
-        return replace(own(pair), motion=motion)
+        return replace(predict(pair), motion=motion)
 
     monkeypatch.setattr(module, "predicted", third)
-    found = uncertainty(LINEAR, 16)
+    ranges = uncertainty(LINEAR, 16)
     numbers = range(4, 20)
-    assert found.attrs["refused"] == sum(k % 3 == 0 for k in numbers)
-    assert found.attrs["linear"] == sum(k % 3 != 0 and k % 2 == 1 for k in numbers)
-    assert found.attrs["contact_lost"] == found.attrs["lost_or_unstable"] == 0
+    assert ranges.attrs["refused"] == sum(k % 3 == 0 for k in numbers)
+    assert ranges.attrs["linear"] == sum(k % 3 != 0 and k % 2 == 1 for k in numbers)
+    assert ranges.attrs["contact_lost"] == ranges.attrs["lost_or_unstable"] == 0
 
 
 def test_ranges_of_few_samples_end_with_the_time_too():
-    known = uncertainty(LINEAR, 16)
-    band = speed_band(LINEAR, np.array([700.0, 900.0]), known, 16, seconds=1e-9)
+    ranges = uncertainty(LINEAR, 16)
+    band = speed_band(LINEAR, np.array([700.0, 900.0]), ranges, 16, seconds=1e-9)
     assert (band.attrs["samples"], band.attrs["taken"], band.attrs["asked"]) == (0, 0, 16)
     assert band["low"].isnull().all()
     assert band["high"].isnull().all()
     differ = LINEAR.with_({"pinion.deviations": {"tolerance_class": 6}})
-    teeth = teeth_band(differ, known, seconds=1e-9)
+    teeth = teeth_band(differ, ranges, seconds=1e-9)
     assert teeth["sideband_ratio"].isnull().all()
     assert teeth.attrs["taken"] == 0 < teeth.attrs["asked"]
-    varied = sampled_predictions(LINEAR, known, 16, seconds=1e-9)
+    varied = sampled_predictions(LINEAR, ranges, 16, seconds=1e-9)
     assert (varied.samples, varied.taken, varied.asked) == ((), 0, 16)
 
 
 def test_machines_of_a_comparison_end_with_the_time_but_not_before_32(monkeypatch):
     """Of 602 s two variants as given take 14, two ends 14: machines of 14 s begin until 588."""
     Clock(monkeypatch, compare_module)
-    found = compare(TORQUE, GREATER, samples=64, seconds=602.0)
-    assert (found.attrs["taken"], found.attrs["asked"], found.sizes["sample"]) == (41, 64, 41)
+    comparison = compare(TORQUE, GREATER, samples=64, seconds=602.0)
+    assert (comparison.attrs["taken"], comparison.attrs["asked"], comparison.sizes["sample"]) == (41, 64, 41)
     few = compare(TORQUE, GREATER, samples=64, seconds=1.0)
     assert (few.attrs["taken"], few.sizes["sample"]) == (32, 32)
-    np.testing.assert_array_equal(few["dte_peak_to_peak"], found["dte_peak_to_peak"][:, :32])
+    np.testing.assert_array_equal(few["dte_peak_to_peak"], comparison["dte_peak_to_peak"][:, :32])
 
 
 def test_a_pair_that_loses_contact_has_its_slow_samples_in_the_range(monkeypatch):
@@ -162,6 +162,6 @@ def test_a_pair_that_loses_contact_has_its_slow_samples_in_the_range(monkeypatch
         {"assumed": {}, "uncertainty": {"mesh.damping_ratio": "/ 2 .. * 2"}}
     )
     Clock(monkeypatch, module)
-    found = uncertainty(pair, 16, seconds=24.0)  # 21 s before the first sample
-    assert found.sizes["sample"] == 1
-    assert found.attrs["contact_lost"] == 1
+    ranges = uncertainty(pair, 16, seconds=24.0)  # 21 s before the first sample
+    assert ranges.sizes["sample"] == 1
+    assert ranges.attrs["contact_lost"] == 1

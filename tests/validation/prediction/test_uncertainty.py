@@ -42,9 +42,9 @@ def torque():
 
 def test_percentiles_of_a_result_that_grows_with_the_input(torque):
     """Transmission error T (1 + 0.04 (2 u - 1)) with u uniform: its percentile p is at u = p."""
-    given = torque.attrs["given_dte_peak_to_peak"]
+    as_given = torque.attrs["given_dte_peak_to_peak"]
     assert list(torque["input"].to_numpy()) == ["operating.pinion_torque"]
-    expected = given * (1.0 + 0.04 * (2.0 * np.array([0.05, 0.5, 0.95]) - 1.0))
+    expected = as_given * (1.0 + 0.04 * (2.0 * np.array([0.05, 0.5, 0.95]) - 1.0))
     # 64 scrambled Sobol points fill the interval evenly to 1/64.
     np.testing.assert_allclose(torque["dte_peak_to_peak_percentile"], expected, rtol=0.08 / 64)
     interval = torque["dte_peak_to_peak_interval"].to_numpy()
@@ -76,8 +76,8 @@ def test_the_same_seed_gives_the_same_samples_and_another_one_others(torque):
 def test_refused_samples_are_counted():
     """A stiffness table without its file cannot be: half of the samples of this choice are refused."""
     pair = LINEAR.with_({"uncertainty": {"mesh.stiffness": ["rectangular", "table"]}})
-    found = uncertainty(pair, 16)
-    assert found.attrs["refused"] == 16 - found.sizes["sample"] == 8
+    ranges = uncertainty(pair, 16)
+    assert ranges.attrs["refused"] == 16 - ranges.sizes["sample"] == 8
 
 
 @pytest.mark.parametrize("made", [
@@ -91,14 +91,14 @@ def test_the_result_with_everything_assumed_lies_inside_its_own_range(made):
     With other choices of one side only the transmission error had 4 to 12 % and the efficiency 90 %.
     """
     pair = new_pair(*made)
-    found = uncertainty(pair, 64)
+    ranges = uncertainty(pair, 64)
     for name in ("dte_peak_to_peak", "tooth_load", "bearing_rms", "efficiency"):
-        below = 100.0 * float(np.mean(found[name].to_numpy() < found.attrs[f"given_{name}"]))
+        below = 100.0 * float(np.mean(ranges[name].to_numpy() < ranges.attrs[f"given_{name}"]))
         assert 20.0 <= below <= 80.0, (name, below)
     for form, change in forms_beside(pair).items():
-        own = predicted(pair.with_(change)).numbers
+        numbers = predicted(pair.with_(change)).numbers
         for name in ("dte_peak_to_peak", "bearing_rms", "efficiency"):
-            assert float(found[f"{name}_form"].sel(form=form)) == pytest.approx(own[name], rel=1e-9)
+            assert float(ranges[f"{name}_form"].sel(form=form)) == pytest.approx(numbers[name], rel=1e-9)
 
 
 def test_a_pair_without_uncertain_inputs_is_refused():
@@ -140,21 +140,21 @@ def test_a_default_spread_never_refuses_a_value_of_the_file(field, value, low, h
     """An end that the field cannot have is the value; a shaft's bearing without tilt stiffness has none."""
     pair = LINEAR.with_({"uncertainty": {}, "pinion.tip_relief": {"amount": 5.0, "start_roll_angle": 25.0}})
     pair = pair.with_({field: value, "friction.law": "coulomb"})
-    found = {one.field: one for one in uncertain_inputs(pair.with_({"assumed": {field: value}}))}
-    ends = (found[field].low, found[field].high) if field in found else (None, None)
+    inputs = {one.field: one for one in uncertain_inputs(pair.with_({"assumed": {field: value}}))}
+    ends = (inputs[field].low, inputs[field].high) if field in inputs else (None, None)
     assert ends == pytest.approx((low, high)) if low is not None else ends == (None, None)
 
 
 def test_teeth_of_a_class_are_drawn_anew_in_every_sample(torque):
     pair = all_assumed(LINEAR.with_({"pinion.deviations": {"tolerance_class": 6}}))
-    found = uncertainty(pair, samples=16)
-    assert np.unique(found.value.sel(input="pinion.deviations.seed")).size == 16
-    swings = found.revolution_dte_peak_to_peak.values
+    ranges = uncertainty(pair, samples=16)
+    assert np.unique(ranges.value.sel(input="pinion.deviations.seed")).size == 16
+    swings = ranges.revolution_dte_peak_to_peak.values
     # Torque alone moves it by 8 %; the class allows indices that differ by F_p.
     assert swings.max() > 1.15 * swings.min()
     allowed = lumped.flank_tolerances(pair.pinion.teeth, pair.basic_rack.module, 6)["F_p"]
     assert swings.max() < allowed + 1.15 * torque.dte_peak_to_peak.values.max()
-    assert ("sideband_ratio" in found, transmission_error(found)) == (True, "revolution_dte_peak_to_peak")
+    assert ("sideband_ratio" in ranges, transmission_error(ranges)) == (True, "revolution_dte_peak_to_peak")
     assert "sideband_ratio" not in torque
     low, high = teeth_band(pair, torque)["revolution_dte_peak_to_peak"].to_numpy()
     assert 0.8 * swings.min() < low < np.median(swings) < high < 1.2 * swings.max()

@@ -74,15 +74,15 @@ def test_a_case_computed_again_keeps_its_stated_discrepancies(name):
         static = computed.static.of_unit(channel.kind.unit.removesuffix("/s"))
         stated = case.discrepancy[channel.name]
         assert any(value is not None for value in vars(stated).values())
-        for way, value in vars(stated).items():
+        for program, value in vars(stated).items():
             if value is None:
-                assert channel.name not in computed.others.get(way, {})
+                assert channel.name not in computed.others.get(program, {})
                 continue
-            other = computed.others[way][channel.name]
+            other = computed.others[program][channel.name]
             measured = discrepancy_of(curve, other, static, computed.period)
-            assert measured <= 1.02 * value + 1e-8, (channel.name, way)
+            assert measured <= 1.02 * value + 1e-8, (channel.name, program)
             # The statement is no empty bound: it is what was measured, with two digits.
-            assert measured >= 0.85 * value or value < 1e-4, (channel.name, way)
+            assert measured >= 0.85 * value or value < 1e-4, (channel.name, program)
     for variable, value in computed.start.items():
         assert case.start[variable] == pytest.approx(value, rel=1e-6, abs=1e-9)
 
@@ -140,10 +140,10 @@ def test_a_curve_shifted_by_a_hundredth_of_a_cycle_is_told(name):
     case = reference(name)
     (dte,) = case.curves.of_quantity("dte")
     shift = round(0.01 * case.samples_per_cycle)
-    moved = np.roll(dte.values, shift)
+    shifted = np.roll(dte.values, shift)
     static = abs(dte.values.mean())
-    assert discrepancy_of(dte.values, moved, static, case.mesh_cycles) > 1e-3
-    signal, other = (orders_of_period(one, 12, case.mesh_cycles) for one in (dte.values, moved))
+    assert discrepancy_of(dte.values, shifted, static, case.mesh_cycles) > 1e-3
+    signal, other = (orders_of_period(one, 12, case.mesh_cycles) for one in (dte.values, shifted))
     back = common_shift([signal], [other], [signal.size])
     assert back == pytest.approx(shift / case.samples_per_cycle, abs=1e-4)
 

@@ -54,15 +54,18 @@ def cosine(table):
 
 def sliding(table):
     """k(t) from the moments of normal loads and friction forces on both gears, pair by pair."""
-    r_p, r_g = table["base_radius_pinion"], table["base_radius_gear"]
-    J_p, J_g = table["inertia_pinion"], table["inertia_gear"]
+    r_p = table["base_radius_pinion"]
+    r_g = table["base_radius_gear"]
+    J_p = table["inertia_pinion"]
+    J_g = table["inertia_gear"]
     mass = 1.0 / (r_p**2 / J_p + r_g**2 / J_g)
 
     def stiffness(t):
         total = 0.0
         for ahead in (0.0, 1.0):
             X = table["path_start"] + table["base_pitch"] * (t / table["period"] + ahead)
-            beyond_pitch, in_contact = X >= table["pitch_point"], X < table["path_end"]  # noqa: SIM300
+            beyond_pitch = X >= table["pitch_point"]  # noqa: SIM300
+            in_contact = X < table["path_end"]  # noqa: SIM300
             if in_contact:
                 N = table["pair_stiffness"]
                 F = table["friction_coefficient"] * N * (1.0 if beyond_pitch else -1.0)
@@ -106,7 +109,8 @@ def test_the_file_has_the_closed_form_and_contact_is_not_lost(definition):
 
 def numbers_of(pair):
     """Numbers of a gear pair for the equation with one degree of freedom."""
-    g, b = pair.geometry, bodies_of(pair)
+    g = pair.geometry
+    b = bodies_of(pair)
     return InvolutePair(
         g.base_radius_pinion, g.base_radius_gear, b.inertia_pinion, b.inertia_gear, g.L_XA, g.L_XD,
         g.L_XP, g.L_XY, g.base_pitch,

@@ -56,20 +56,20 @@ def complaints(written: Written, table: str) -> list[str]:
             f'No test recomputes the table "{table}". Write a test above which stands '
             f'@recomputes("{table}", {headings}) in tests/validation/reporting/test_numbers.py.'
         ]
-    found = []
+    mistakes = []
     for name in columns:
         if name not in recomputation.headings:
-            found.append(
+            mistakes.append(
                 f'No test recomputes the column "{name}" of the table "{table}". In {recomputation.place}: '
                 f'add {name}="<its heading>" to @recomputes, and compare one["{name}"] with a value that is '
                 "computed from the saved data."
             )
         elif _unseen(written, recomputation, name):
-            found.append(
+            mistakes.append(
                 f'{recomputation.place} does not see a wrong value in the column "{name}" of the table '
                 f'"{table}". Compare one["{name}"] with a value that is computed from the saved data.'
             )
-    return found
+    return mistakes
 
 
 def _unseen(written: Written, recomputation: Recomputation, column: str) -> bool:

@@ -10,7 +10,10 @@ from validation.exchange import new_pair
 
 
 def _shaft(diameter: float, stiffness: float) -> dict[str, object]:
-    ends = [{"position": at, "loa_stiffness": stiffness, "oloa_stiffness": stiffness} for at in (10, 150)]
+    ends = [
+        {"position": position, "loa_stiffness": stiffness, "oloa_stiffness": stiffness}
+        for position in (10, 150)
+    ]
     return {
         "segments": [{"length": 160, "diameter": diameter}], "gear_position": 80, "bearings": ends,
     }  # fmt: skip

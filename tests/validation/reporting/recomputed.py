@@ -32,17 +32,17 @@ def read(text):
 
 def assert_printed(text, value, unit, digits=4):
     """A printed number is a value in its unit, to its digits; three where it has a power of ten."""
-    found, base = read(text)
+    number, base = read(text)
     digits = min(digits, 3) if "×" in text else digits
     assert base == unit or value == 0.0, (text, unit)
-    assert abs(found - value) <= 0.51 * 10.0 ** (1 - digits) * abs(value) + 1e-300, (text, value)
+    assert abs(number - value) <= 0.51 * 10.0 ** (1 - digits) * abs(value) + 1e-300, (text, value)
 
 
 def assert_says(sentence, pattern, *expected, digits=3):
     """A sentence has the form of a pattern, and its groups are the expected (value, unit), or text."""
-    found = re.fullmatch(pattern, sentence)
-    assert found, (sentence, pattern)
-    for group, one in zip(found.groups(), expected, strict=True):
+    match = re.fullmatch(pattern, sentence)
+    assert match, (sentence, pattern)
+    for group, one in zip(match.groups(), expected, strict=True):
         if isinstance(one, str):
             assert group == one, (sentence, one)
         else:
@@ -72,11 +72,11 @@ def power(parameters):
 def amplitudes(values, cycles=1):
     """Amplitudes at the orders 1 to 10 by sums of cosines and sines."""
     phase = 2.0 * np.pi * np.arange(values.size) * cycles / values.size
-    found = []
+    orders = []
     for order in range(1, 11):
         c, s = (2.0 * np.mean(values * f(order * phase)) for f in (np.cos, np.sin))
-        found.append(math.hypot(c, s))
-    return np.array(found)
+        orders.append(math.hypot(c, s))
+    return np.array(orders)
 
 
 def operating_angle(parameters):
@@ -89,7 +89,8 @@ def operating_angle(parameters):
 
 def tip_alteration(parameters):
     """What keeps the clearance of the rack, k m [mm]: the centre distance less that of the full shifts."""
-    (r_p, r_g), rack = base_radii(parameters), parameters["basic_rack"]
+    r_p, r_g = base_radii(parameters)
+    rack = parameters["basic_rack"]
     shifts, teeth = (sum(parameters[g][key] for g in _GEARS) for key in ("profile_shift", "teeth"))
     centre = 1e3 * (r_p + r_g) / math.cos(operating_angle(parameters))
     return min(0.0, centre - rack["module"] * (0.5 * teeth + shifts))
@@ -100,7 +101,8 @@ def path_of_contact(parameters):
 
     Tips are addendum and shift beyond the reference, or where the mate's root leaves the rack's clearance.
     """
-    rack, (r_p, r_g) = parameters["basic_rack"], base_radii(parameters)
+    rack = parameters["basic_rack"]
+    r_p, r_g = base_radii(parameters)
     working = math.tan(operating_angle(parameters))
     tips = [
         1e-3 * rack["module"] * (0.5 * gear["teeth"] + rack["addendum_coefficient"] + gear["profile_shift"])
@@ -118,7 +120,8 @@ def path_of_contact(parameters):
         tip if "tip_alteration" in parameters[name] else min(tip, centre - root - clearance)
         for name, tip, root in zip(_GEARS, tips, roots[::-1], strict=True)
     ]
-    end, start = math.sqrt(tips[0] ** 2 - r_p**2), length - math.sqrt(tips[1] ** 2 - r_g**2)
+    end = math.sqrt(tips[0] ** 2 - r_p**2)
+    start = length - math.sqrt(tips[1] ** 2 - r_g**2)
     return start, r_p * working, end, length
 
 
@@ -140,7 +143,8 @@ def films(parameters, xi):
     gears = (parameters["pinion"], parameters["gear"])
     eta = 1e-3 * oil["viscosity"]
     g = 1e-6 * oil["pressure_viscosity_k"] * (1e3 * eta) ** oil["pressure_viscosity_s"] * modulus
-    u, w = eta * rolling / (2.0 * modulus * radius), load / (modulus * radius)
+    u = eta * rolling / (2.0 * modulus * radius)
+    w = load / (modulus * radius)
     film = 3.06 * g**0.56 * u**0.69 * w**-0.10 * radius
     other = 2.69 * g**0.53 * u**0.67 * w**-0.067 * radius
     rough = 1e-6 * math.hypot(*(one["roughness"] for one in gears))

@@ -76,8 +76,8 @@ def test_no_speed_is_unstable_over_the_range_that_is_named(results):
     assert claim.scope.supports == "springs"
     assert claim.claim == "no speed is unstable", "these pairs have none"
     for rpm in np.geomspace(low, high, 14):
-        found = floquet.gear_pair_multipliers(pair.at_speed(float(rpm)), supports="springs")
-        assert found.verdict != "unstable", rpm
+        multipliers = floquet.gear_pair_multipliers(pair.at_speed(float(rpm)), supports="springs")
+        assert multipliers.verdict != "unstable", rpm
 
 
 def test_where_no_jump_was_looked_for_the_linear_motion_keeps_contact(results):
@@ -100,22 +100,24 @@ def test_all_jumps_of_the_range_are_found_in_a_quick_report(kind):
     """The search of the whole range, without a limit of time, with runs from other starts."""
     results = results_of(kind)
     assert results.jump_search.open == ()
-    whole = floquet.response_branches(results.pair, (6900.0, 10_000.0), (1, 2, 3), seeds=20)
-    expected = [jump.speed_rpm for jump in whole.jumps]
+    branches = floquet.response_branches(results.pair, (6900.0, 10_000.0), (1, 2, 3), seeds=20)
+    expected = [jump.speed_rpm for jump in branches.jumps]
     assert len(expected) >= 4
-    found = np.array([jump.speed_rpm for jump in results.jump_search.jumps])
+    jumps = np.array([jump.speed_rpm for jump in results.jump_search.jumps])
     for speed in expected:
-        assert np.abs(found / speed - 1.0).min() < 2e-3, speed
-    own = results.operating_rpm
-    nearest = found[np.abs(found - own).argmin()]
-    assert next(one for one in page_one(results).numbers if one.key == "hazard").value == nearest - own
+        assert np.abs(jumps / speed - 1.0).min() < 2e-3, speed
+    operating_rpm = results.operating_rpm
+    nearest = jumps[np.abs(jumps - operating_rpm).argmin()]
+    assert (
+        next(one for one in page_one(results).numbers if one.key == "hazard").value == nearest - operating_rpm
+    )
 
 
 def test_a_resonance_is_where_an_order_meets_a_natural_frequency(results):
-    found = results.resonance
+    resonance = results.resonance
     pair = results.pair
     claim = plain(facts_of(results)["resonance"].claim)
-    if found is None:
+    if resonance is None:
         assert claim == "no mesh order resonates"
         return
     supports = "springs" if pair.shafts is None else "shafts"
@@ -145,25 +147,25 @@ def test_the_headline_is_smooth_only_off_a_resonance(results):
 def test_the_force_of_a_resonance_falls_where_the_page_says():
     """Root mean square of the bearing force over speed, by motions of its own: a peak, and half beside it."""
     results = results_of("resonance")
-    found = results.resonance
+    resonance = results.resonance
     pair = results.pair
-    assert found is not None
-    assert found.near
+    assert resonance is not None
+    assert resonance.near
 
     def size(rpm: float) -> float:
         motion = linear(pair, rpm)
         assert motion is not None
         gear = {"mesh force": "", "force on the pinion bearings": "p", "force on the gear bearings": "g"}[
-            found.place
+            resonance.place
         ]
         if not gear:
             return float(motion["normal_load"].sum("pair").std())
         return math.hypot(*(float(motion[f"bearing_force_{line}_{gear}"].std()) for line in "xy"))
 
-    peak = size(found.speed_rpm)
-    around = [size(factor * found.speed_rpm) for factor in (0.94, 0.97, 1.03, 1.06)]
+    peak = size(resonance.speed_rpm)
+    around = [size(factor * resonance.speed_rpm) for factor in (0.94, 0.97, 1.03, 1.06)]
     assert peak > max(around)
-    for side in (found.below_rpm, found.above_rpm):
+    for side in (resonance.below_rpm, resonance.above_rpm):
         if math.isfinite(side):
             assert size(side) <= 0.5 * peak
             inside = side + 0.025 * operating_rpm(pair) * (1.0 if side < operating_rpm(pair) else -1.0)
@@ -206,29 +208,29 @@ def test_teeth_as_given_lead():
     assert first.value > 2.0 * float(like.attrs["dte_peak_to_peak"])
     # K_v is of the coarser class of the file.
     rows = response.write(results).blocks[0].rows
-    note = next(row[2] for row in rows if str(row[0]).startswith("K_v"))
+    note = next(note for symbol, _, note, *_ in rows if str(symbol).startswith("K_v"))
     assert note.endswith("tolerances of class 6")
 
 
 def test_a_scope_is_what_was_computed(results):
     """No claim of a quick report is said to be of a full one, of other supports, or of a wider range."""
-    known = facts_of(results)
-    for one in known.values():
+    facts = facts_of(results)
+    for one in facts.values():
         low, high = one.scope.speeds_rpm
         assert one.scope.effort == "quick report"
         assert results.speeds[0] <= low <= high <= results.speeds[1]
-    own = "shafts" if results.given.shafts is not None else "springs"
-    assert {known[key].scope.supports for key in ("contact", "stable", "resonance", "inputs")} == {own}
-    assert known["jumps"].scope.teeth == known["unstable_speeds"].scope.teeth == "alike"
+    supports = "shafts" if results.given.shafts is not None else "springs"
+    assert {facts[key].scope.supports for key in ("contact", "stable", "resonance", "inputs")} == {supports}
+    assert facts["jumps"].scope.teeth == facts["unstable_speeds"].scope.teeth == "alike"
 
 
 def test_what_the_budget_left_open_is_said_and_not_claimed():
     """A search that ends after the first speeds: the range shrinks, and the command goes on."""
-    given = results_of("jump far")
-    results = Results(given.given, EFFORT, "pair.toml")
-    vars(results).update({name: vars(given)[name] for name in vars(given) if name != "jump_search"})
+    complete = results_of("jump far")
+    results = Results(complete.given, EFFORT, "pair.toml")
+    vars(results).update({name: vars(complete)[name] for name in vars(complete) if name != "jump_search"})
     vars(results)["name"] = "pair.toml"
-    search = given.jump_search
+    search = complete.jump_search
     vars(results)["jump_search"] = type(search)(
         pair=search.pair, speeds_rpm=search.speeds_rpm, windows=search.windows, branches=(),
         open=((7000.0, 9900.0),), seconds=5.0,

@@ -41,14 +41,14 @@ def axis(label):
 
 def column(data, name):
     """A column of a CSV and its unit."""
-    found = next(c for c in data.columns if c == name or c.startswith(f"{name} ["))
-    return data[found].to_numpy(), found[len(name) + 2 : -1] or "1"
+    title = next(c for c in data.columns if c == name or c.startswith(f"{name} ["))
+    return data[title].to_numpy(), title[len(name) + 2 : -1] or "1"
 
 
-def close(found, expected, rel=1e-9):
+def close(actual, expected, rel=1e-9):
     values = np.abs(np.asarray(expected, dtype=float))
     largest = float(values[np.isfinite(values)].max(initial=1e-300))
-    np.testing.assert_allclose(found, expected, rtol=rel, atol=1e-9 * largest)
+    np.testing.assert_allclose(actual, expected, rtol=rel, atol=1e-9 * largest)
 
 
 def lines_of(ax):
@@ -133,7 +133,8 @@ def test_csv_of_the_curves_over_a_cycle(written):
 
 
 def test_the_transmission_error_over_speed(written):
-    sweep, (operating, _) = written.data("sweep"), (written.parameters["operating"]["pinion_speed"], "rpm")
+    sweep = written.data("sweep")
+    operating = written.parameters["operating"]["pinion_speed"]
     names = [n for n in ("over_speed", "motions_over_speed") if n in written.figures]
     assert ("motions_over_speed" in names) == (written.document["gear_pair"] == "lost")
     for name in names:
@@ -174,8 +175,8 @@ def test_the_transmission_error_over_speed(written):
         arrows = [text for text in ax.texts if getattr(text, "arrow_patch", None) is not None]
         ends = [(*text.xyann, *text.xy) for text in arrows]
         assert len(ends) == len(jumps)
-        for (x, start, at, end), (_, row) in zip(ends, jumps.iterrows(), strict=True):
-            assert x == at == pytest.approx(row["jump_speed_rpm"])
+        for (x, start, jump_rpm, end), (_, row) in zip(ends, jumps.iterrows(), strict=True):
+            assert x == jump_rpm == pytest.approx(row["jump_speed_rpm"])
             assert (start * factor, end * factor) == (
                 pytest.approx(row["jump_from [m]"]),
                 pytest.approx(row["jump_to [m]"]),
@@ -227,8 +228,8 @@ def test_the_swings(written):
     _, unit, factor = axis(ax.get_xlabel())
     bars = sorted(ax.patches, key=lambda bar: -bar.get_y())
     close([(bar.get_x() * factor, (bar.get_x() + bar.get_width()) * factor) for bar in bars], swing[largest])
-    given = written.document["numbers"]["dte_peak_to_peak"]["value"]
-    assert (unit, [x * factor for x in upright(ax)]) == ("m", [pytest.approx(given)])
+    peak_to_peak = written.document["numbers"]["dte_peak_to_peak"]["value"]
+    assert (unit, [x * factor for x in upright(ax)]) == ("m", [pytest.approx(peak_to_peak)])
     labels = dict(zip(ax.get_yticks(), (plain(t.get_text()) for t in ax.get_yticklabels()), strict=True))
     words = [labels[round(bar.get_y() + 0.5 * bar.get_height())] for bar in bars]
     for field, text in zip(data["input"], words, strict=True):
@@ -283,7 +284,7 @@ def test_the_map_of_orders(written):
     pair = pair_of(written)
     data = written.curves("orders_over_speed")
     table = data.pivot(index="order", columns="speed_rpm", values="amplitude [N]")
-    speed = table.columns[3]
+    _, _, _, speed, *_ = table.columns
     cycle = lumped.steady_state(pair.with_({"operating.pinion_speed": float(speed)}), samples_per_cycle=128)
     size = np.hypot(*(recomputed.amplitudes(cycle[f"bearing_force_{line}_p"].to_numpy()) for line in "xy"))
     close(table[speed], size, 1e-6)
@@ -301,10 +302,10 @@ def test_the_map_of_orders(written):
     resonances = [
         60.0 * mode.natural_frequency / written.parameters["pinion"]["teeth"] for mode in modes(pair)
     ]
-    found = {round(float(x * o), 3) for line in drawn for x, o in zip(*line.get_data(), strict=True)}
-    assert found <= {round(one, 3) for one in resonances}
+    points = {round(float(x * o), 3) for line in drawn for x, o in zip(*line.get_data(), strict=True)}
+    assert points <= {round(one, 3) for one in resonances}
     inside = {round(r, 3) for r in resonances if edges[0] <= r / 10.0 and r <= edges[-1]}
-    assert inside <= found
+    assert inside <= points
 
 
 def test_the_stability_chart(written):

@@ -10,9 +10,9 @@ from validation.reporting.gate import compare, load_report
 
 
 def test_a_report_is_like_itself(written):
-    found = compare(written.document, written.document)
-    assert found.changes == ()
-    assert found.compared > 100
+    comparison = compare(written.document, written.document)
+    assert comparison.changes == ()
+    assert comparison.compared > 100
 
 
 @pytest.mark.parametrize(("factor", "fails"), [(1.0005, False), (1.002, True)])
@@ -20,10 +20,10 @@ def test_a_number_beyond_the_tolerance_fails(written, factor, fails):
     new = copy.deepcopy(written.document)
     new["numbers"]["dte_peak_to_peak"]["value"] *= factor
     new["chapters"]["forces"]["forces"][0]["value"]["value"] *= factor
-    found = compare(written.document, new)
-    assert len(found.changes) == 2
-    assert all(change.fails is fails for change in found.changes)
-    assert bool(found.regressions) is fails
+    comparison = compare(written.document, new)
+    assert len(comparison.changes) == 2
+    assert all(change.fails is fails for change in comparison.changes)
+    assert bool(comparison.regressions) is fails
 
 
 def test_a_worse_verdict_fails_and_a_better_one_does_not(written):
@@ -43,8 +43,8 @@ def test_what_is_gone_fails_and_what_is_new_does_not(written):
 def test_changed_parameters_are_shown_and_do_not_fail(written):
     new = copy.deepcopy(written.document)
     new["parameters"]["mesh"]["damping_ratio"] = 0.07
-    found = compare(written.document, new)
-    assert [(c.path, c.fails) for c in found.changes] == [("parameters/mesh/damping_ratio", False)]
+    comparison = compare(written.document, new)
+    assert [(c.path, c.fails) for c in comparison.changes] == [("parameters/mesh/damping_ratio", False)]
 
 
 def test_errors_of_the_numerics_are_not_compared(written):

@@ -90,7 +90,7 @@ def motions_of(written):
 
 def nearest_hazard(written):
     """Speed and way of the nearest jump; these pairs have no unstable speed."""
-    own = written.parameters["operating"]["pinion_speed"]
+    operating_speed = written.parameters["operating"]["pinion_speed"]
     jumps = [
         (float(speed), "up" if rising else "down")
         for motions in map(written.data, motions_of(written))
@@ -98,7 +98,7 @@ def nearest_hazard(written):
             motions["jump_speed_rpm"].to_numpy(), motions["jump_rising"].to_numpy(), strict=True
         )
     ]
-    return min(jumps, key=lambda jump: abs(jump[0] - own), default=None)
+    return min(jumps, key=lambda jump: abs(jump[0] - operating_speed), default=None)
 
 
 def test_numbers_of_page_1(written):
@@ -158,10 +158,10 @@ def test_the_efficiency_of_the_second_program_is_that_of_its_own_power_balance(w
 
 def test_the_distance_to_a_hazard_is_that_of_the_nearest_jump(written):
     number = written.document["numbers"]["hazard"]
-    found = nearest_hazard(written)
+    hazard = nearest_hazard(written)
     speed = written.parameters["operating"]["pinion_speed"]
     assert number["unit"] == "rpm"
-    if found is None:
+    if hazard is None:
         assert number["value"] is None
         recomputed.assert_says(
             number["note"],
@@ -171,9 +171,9 @@ def test_the_distance_to_a_hazard_is_that_of_the_nearest_jump(written):
             digits=5,
         )
         return
-    assert number["value"] == close(found[0] - speed)
+    assert number["value"] == close(hazard[0] - speed)
     recomputed.assert_says(
-        number["note"], r"jump, running (\w+) at (.*)", found[1], (found[0], "rpm"), digits=5
+        number["note"], r"jump, running (\w+) at (.*)", hazard[1], (hazard[0], "rpm"), digits=5
     )
 
 
@@ -232,9 +232,9 @@ def test_the_table_of_orders(written):
 
 @recomputes("modes", frequency="frequency", damping="damping ratio", speed="speed at which order 1 meets it")
 def test_the_table_of_modes(written):
-    found = modes(pair_of(written))
-    assert len(found) == len(written.table("modes"))
-    for one, mode in zip(written.table("modes"), found, strict=True):
+    mode_list = modes(pair_of(written))
+    assert len(mode_list) == len(written.table("modes"))
+    for one, mode in zip(written.table("modes"), mode_list, strict=True):
         assert one["frequency"] == {"value": close(mode.natural_frequency), "unit": "Hz"}
         assert one["damping"] == close(mode.damping_ratio)
         speed = 60.0 * mode.natural_frequency / written.parameters["pinion"]["teeth"]
@@ -288,24 +288,24 @@ def test_the_table_of_forces(written):
     motion="motion after",
 )
 def test_the_table_of_jumps(written):
-    found = nearest_hazard(written)
-    if found is None:
+    hazard = nearest_hazard(written)
+    if hazard is None:
         assert "jumps" not in written.document["chapters"]["contact_loss"]
         return
     motions = written.data("motions")
     table = written.table("jumps")
     assert len(table) == motions.sizes["jump"] > 0
-    for at, one in enumerate(table):
+    for place, one in enumerate(table):
         columns = {
             "speed": "speed_rpm", "before": "dte_rms", "after": "dte_rms_after", "load": "largest_load_after",
         }  # fmt: skip
         for column, name in columns.items():
             jump = motions[f"jump_{name}"]
             unit = jump.attrs["units"]
-            value = float(jump[at]) if np.isfinite(jump[at]) else None
+            value = float(jump[place]) if np.isfinite(jump[place]) else None
             assert one[column] == {"value": value if value is None else close(value), "unit": unit}, name
-        assert one["motion"] == str(motions["jump_after"].to_numpy()[at])
-        assert one["way"] == ("up" if motions["jump_rising"].to_numpy()[at] else "down")
+        assert one["motion"] == str(motions["jump_after"].to_numpy()[place])
+        assert one["way"] == ("up" if motions["jump_rising"].to_numpy()[place] else "down")
         # Rising, a motion cannot end below the speeds that were looked at.
         assert motions.attrs["speed_low_rpm"] <= one["speed"]["value"] <= motions.attrs["speed_high_rpm"]
 
@@ -402,9 +402,11 @@ def test_the_error_budget(written):
     force = recomputed.static_force(written.parameters)
     second = of_motion(written, "second_program")
     first = of_motion(written, "prediction")
-    at = list(rows).index("second")
-    assert table[at]["tooth_force"]["value"] == close(abs(first["tooth_load"] - second["tooth_load"]) * force)
-    assert table[at]["bearing_force"]["value"] == close(abs(first["bearing_rms"] - second["bearing_rms"]))
+    row = list(rows).index("second")
+    assert table[row]["tooth_force"]["value"] == close(
+        abs(first["tooth_load"] - second["tooth_load"]) * force
+    )
+    assert table[row]["bearing_force"]["value"] == close(abs(first["bearing_rms"] - second["bearing_rms"]))
     for place, one in enumerate(table):
         for column, unit in (("dte", "m"), ("tooth_force", "N"), ("bearing_force", "N")):
             size = float(budget[column][place])
@@ -459,8 +461,8 @@ def test_the_table_of_the_inputs_that_are_varied(written):
         assert shown.replace(" to ", " .. ").replace("\u00a0", "_") == spread
     damping = samples["value"].sel(input="mesh.damping_ratio").to_numpy()
     order = np.corrcoef(np.argsort(np.argsort(damping)), np.argsort(np.argsort(samples["dte_peak_to_peak"])))
-    found = next(one for one in table if one["field"] == "mesh.damping_ratio")["correlation"]
-    assert found == pytest.approx(order[0, 1], abs=0.00501)
+    correlation = next(one for one in table if one["field"] == "mesh.damping_ratio")["correlation"]
+    assert correlation == pytest.approx(order[0, 1], abs=0.00501)
 
 
 @recomputes(
@@ -480,18 +482,20 @@ def test_the_table_of_agreement(written):
         across = "off the line" in one["quantity"]
         assert one["limit"] == limits[one["fidelity"], across], one
         assert one["state"]["text"] == ("ok" if one["difference"] <= one["limit"] else "differs"), one
-    found = {(one["quantity"], one["fidelity"]): one["difference"] for one in written.table("agreement")}
-    assert len(found) == 14
+    differences = {
+        (one["quantity"], one["fidelity"]): one["difference"] for one in written.table("agreement")
+    }
+    assert len(differences) == 14
     period = 1.0 / recomputed.mesh_frequency(written.parameters)
     curve = np.interp(second["time"] % period, first["time"], first["dte"], period=period)
     size = np.abs(second["dte"].to_numpy() - curve).max() / np.ptp(first["dte"].to_numpy())
     # Samples of the prediction lie between those of the second program.
     name = "dynamic transmission error"
-    assert found[name, "exact contact, finite motions"] == pytest.approx(size, rel=0.25)
-    assert found[name, "same equations"] < 1e-6
+    assert differences[name, "exact contact, finite motions"] == pytest.approx(size, rel=0.25)
+    assert differences[name, "same equations"] < 1e-6
     again = known(written.document["gear_pair"]).check.agreements  # tests of the cross-check compute them
     assert [one["quantity"] for one in written.table("agreement")] == [one.long_name for one in again]
-    assert list(found.values()) == [close(one.difference) for one in again]
+    assert list(differences.values()) == [close(one.difference) for one in again]
 
 
 @recomputes("conservation", check="check", value="residual", limit="limit", state="")
@@ -593,8 +597,10 @@ def test_the_table_of_parameters(written):
         zip(map(str, spreads["input"].to_numpy()), spreads.attrs["written"].split("; "), strict=True)
     )
     for gear in ("pinion", "gear"):  # both directions of a bearing are one input
-        for way in ("loa", "oloa"):
-            written_as[f"bearings.{gear}.{way}_damping_ratio"] = written_as[f"bearings.{gear}.damping_ratio"]
+        for direction in ("loa", "oloa"):
+            written_as[f"bearings.{gear}.{direction}_damping_ratio"] = written_as[
+                f"bearings.{gear}.damping_ratio"
+            ]
     table = written.table("parameters")
     for one in table:
         section, _, name = one["field"].rpartition(".")
@@ -616,18 +622,21 @@ def test_the_table_of_parameters(written):
             ), one
         assert one["range"] == written_as.get(one["field"], ""), one
     states = [one["state"] for one in table]
-    given = states.count("")
-    unread = states.count("not read")
-    assumed = len(table) - given - unread
+    known_count = states.count("")
+    unread_count = states.count("not read")
+    assumed_count = len(table) - known_count - unread_count
     # Of friction what the laws do not read between which it varies; the backlash where contact is kept.
-    left = {one["field"] for one in table if one["state"] == "not read"}
-    assert {"friction.sharpness", "friction.thresholds"} <= left
-    assert ("mesh.backlash" in left) == ("least_force" not in written.document["numbers"])
+    not_read = {one["field"] for one in table if one["state"] == "not read"}
+    assert {"friction.sharpness", "friction.thresholds"} <= not_read
+    assert ("mesh.backlash" in not_read) == ("least_force" not in written.document["numbers"])
     caption = written.document["chapters"]["inputs"]["tables"]["parameters"]["caption"]
     assert caption == (
-        f"All values: {given} known, {assumed} assumed, {unread} that the chosen laws and models do not read."
+        f"All values: {known_count} known, {assumed_count} assumed, "
+        f"{unread_count} that the chosen laws and models do not read."
     )
-    assert written.sentences["inputs"] == f"{assumed} of {given + assumed} values are assumed."
+    assert (
+        written.sentences["inputs"] == f"{assumed_count} of {known_count + assumed_count} values are assumed."
+    )
 
 
 @recomputes("evidence", kind="kind", checks="checks", use="largest error / limit", state="")

@@ -8,8 +8,8 @@ import pandas as pd
 import pytest
 import xarray as xr
 
-from tests.validation.records.dynamic_records import dynamic_record
-from validation.check.record.channel_comparison import Record
+from tests.validation.check.record.dynamic_motions import dynamic_record
+from validation.check.record.channel import Record
 from validation.exchange.new_pair_file import new_pair
 from validation.prediction.motion import predicted
 from validation.prediction.uncertainty import sampled_predictions, uncertainty
@@ -62,15 +62,15 @@ def test_a_record_closes_the_gate_where_it_does_not_confirm(right, wrong):
 
 
 def test_the_result_says_the_verdict_and_both_sizes(wrong):
-    said = chapter.write(wrong).result
-    assert said.startswith("The record contradicts the prediction. Measured ")
-    found = wrong.measured_error
-    assert f"{abs(found.peak_to_peak.percent):.0f} % too low" in said
-    assert found.peak_to_peak.percent == pytest.approx(100.0 * (1.0 / 1.4 - 1.0), abs=1.0)
+    sentence = chapter.write(wrong).result
+    assert sentence.startswith("The record contradicts the prediction. Measured ")
+    error = wrong.measured_error
+    assert f"{abs(error.peak_to_peak.percent):.0f} % too low" in sentence
+    assert error.peak_to_peak.percent == pytest.approx(100.0 * (1.0 / 1.4 - 1.0), abs=1.0)
 
 
 def test_tables_are_the_comparison_in_one_unit_a_column(wrong):
-    found = wrong.measured_error
+    comparison = wrong.measured_error
     tables = {one.key: one for one in blocks(wrong, Table)}
     for table in tables.values():
         assert not any(isinstance(cell, Quantity) for row in table.rows for cell in row)
@@ -79,7 +79,7 @@ def test_tables_are_the_comparison_in_one_unit_a_column(wrong):
     rows = {row[0]: dict(zip(table.columns, row, strict=True)) for row in table.rows}
     assert set(rows) == {"dte", "x_p"}
     for name, row in rows.items():
-        one = next(channel for channel in found.channels if channel.name == name)
+        one = next(channel for channel in comparison.channels if channel.name == name)
         sizes = one.measured.peak_to_peak, one.predicted.peak_to_peak
         assert [row["measured"], row["predicted"]] == pytest.approx(np.multiply(sizes, 1e6), rel=5e-3)
         assert row["percent"] == pytest.approx(100.0 * (sizes[1] / sizes[0] - 1.0), rel=1e-2, abs=0.02)
@@ -101,19 +101,20 @@ def test_what_inputs_would_leave_is_blank_where_they_were_not_varied(wrong):
 
 
 def test_the_figure_draws_both_motions_and_their_orders(wrong, tmp_path):
-    (picture,) = blocks(wrong, Picture)
-    found = wrong.measured_error
+    picture, ladder = blocks(wrong, Picture)
+    assert ladder.key == "explanations"  # what a record that contradicts is compatible with
+    comparison = wrong.measured_error
     figure = picture.figure()
-    for row, one in enumerate(found.channels):
-        left, right = figure.axes[2 * row : 2 * row + 2]
-        curves = {line.get_gid(): np.ptp(line.get_ydata()) for line in left.lines if line.get_gid()}
+    for row, one in enumerate(comparison.channels):
+        motions, orders = figure.axes[2 * row : 2 * row + 2]
+        curves = {line.get_gid(): np.ptp(line.get_ydata()) for line in motions.lines if line.get_gid()}
         ratio = curves["predicted"] / curves["measured"]
         assert ratio == pytest.approx(one.peak_to_peak.predicted / one.peak_to_peak.measured, rel=1e-2)
-        heights = [bar.get_height() for bar in right.patches]
+        heights = [bar.get_height() for bar in orders.patches]
         half = len(heights) // 2
         shown = one.measured.amplitudes[one.measured.orders <= 10.0]
         assert np.array(heights[:half]) / heights[0] == pytest.approx(shown / shown[0])
-        assert left.get_ylabel().startswith(f"{one.name} [")
+        assert motions.get_ylabel().startswith(f"{one.name} [")
     write_tables(blocks(wrong, Table), [picture], tmp_path)
     data = pd.read_csv(tmp_path / "figure_record.csv")
     assert {"channel", "phase"} <= set(data)
@@ -129,11 +130,11 @@ def test_varied_inputs_reach_the_comparison(pair):
     results = Results(pair, QUICK, record=dynamic_record(predicted(pair), ("dte",)))
     results.uncertainty = uncertainty(pair, 16)
     results.effort = type(QUICK)(**{**vars(QUICK), "band_samples": 16})
-    found = results.measured_error
-    assert found.varied
+    comparison = results.measured_error
+    assert comparison.varied
     samples = sampled_predictions(pair, results.uncertainty, 16)
     moves = [one.peak_to_peak - samples.given.peak_to_peak for one in samples.samples]
-    assert found.peak_to_peak.inputs == pytest.approx(np.sqrt(np.mean(np.square(moves))), rel=2e-2)
+    assert comparison.peak_to_peak.inputs == pytest.approx(np.sqrt(np.mean(np.square(moves))), rel=2e-2)
 
 
 def test_page_1_says_the_verdict_of_the_record_and_where_it_is_shown(right, wrong, pair):
@@ -144,8 +145,8 @@ def test_page_1_says_the_verdict_of_the_record_and_where_it_is_shown(right, wron
         "Compared with a measurement? The record contradicts the prediction. Meas"
     )
     assert " x_p (pinion " in first.reason  # not the name of a variable alone
-    said = page_one(right).sure[-1]
-    assert said.startswith("Compared with a measurement? The record confirms the prediction. Measured ")
+    sentence = page_one(right).sure[-1]
+    assert sentence.startswith("Compared with a measurement? The record confirms the prediction. Measured ")
 
     def mirrored(quantity, values, u):
         return -values if quantity == "x_p" else values
@@ -163,16 +164,18 @@ def test_page_1_says_the_verdict_of_the_record_and_where_it_is_shown(right, wron
 def test_a_record_that_confirms_within_a_wide_range_is_said_beside_it(right):
     """The range is that of machines that were not measured."""
     results = copy.copy(right)
-    wide = {
+    ranges = {
         f"{name}_percentile": ("percentile", [0.5 * v, v, 2.0 * v]) for name, v in right.like.numbers.items()
     }
     values = {name: ("sample", [v]) for name, v in right.like.numbers.items()}
     attrs = {f"given_{name}": value for name, value in right.like.numbers.items()}
     attrs |= {"taken": 64, "asked": 64, "refused": 0, "linear": 0, "alone": 1, "seconds": 30.0}
     attrs |= {"contact_lost": 0, "unstable": 0, "lost_or_unstable": 0}
-    vars(results)["uncertainty"] = xr.Dataset(wide | values, attrs=attrs).assign_coords(
+    vars(results)["uncertainty"] = xr.Dataset(ranges | values, attrs=attrs).assign_coords(
         input=["mesh.damping_ratio"]
     )
-    found = verdict_of(results, facts_of(results))
-    assert found.verdict is Verdict.UNCERTAIN
-    assert "A record confirms the prediction; the range is that of every possible machine." in found.reason
+    judgement = verdict_of(results, facts_of(results))
+    assert judgement.verdict is Verdict.UNCERTAIN
+    assert (
+        "A record confirms the prediction; the range is that of every possible machine." in judgement.reason
+    )

@@ -64,10 +64,10 @@ def test_tables_as_csv_have_the_numbers_in_si(written):
                 measured = [one for one in cells if isinstance(one, dict) and "unit" in one]
                 units = {one["unit"] for one in measured}
                 only = units.pop() if len(units) == 1 else "1"
-                found = data[column if only == "1" else f"{column} [{only}]"]
+                column_values = data[column if only == "1" else f"{column} [{only}]"]
                 for place, cell in enumerate(cells):
                     value = cell["value"] if isinstance(cell, dict) and "unit" in cell else cell
                     if isinstance(value, float):
-                        assert float(found[place]) == close(value), (name, column)
+                        assert float(column_values[place]) == close(value), (name, column)
                         if len({one["unit"] for one in measured}) > 1:
                             assert data[f"{column} unit"][place] == (cell["unit"])

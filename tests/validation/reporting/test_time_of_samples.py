@@ -31,13 +31,13 @@ _KEPT = (
 
 def hurried(seconds: float, band_seconds: float) -> Results:
     """Results of a pair with little time for samples, all else computed once."""
-    given = known("calm")
+    reference = known("calm")
     results = Results(
         PAIRS["calm"](), replace(SMALL, sample_seconds=seconds, band_seconds=band_seconds), "calm"
     )
     for name in _KEPT:
-        getattr(given, name)
-    vars(results).update({name: vars(given)[name] for name in _KEPT})
+        getattr(reference, name)
+    vars(results).update({name: vars(reference)[name] for name in _KEPT})
     return results
 
 
@@ -49,14 +49,15 @@ def nothing(tmp_path_factory) -> Written:
 
 
 def test_without_time_page_1_has_no_range_and_says_why(nothing):
-    said = plain(nothing.document["how_sure"][1])
+    sentence = plain(nothing.document["how_sure"][1])
     inputs = nothing.data("uncertainty").sizes["input"]
     claim = (
         "There is no range: it needs 8 possible machines, and 0 of 16 were computed; the time of 1e-09 s was "
         f"used up; 0 of {inputs} inputs were moved alone. There is no range over speed: it needs 2 possible "
         "machines, and 0 of 4 were computed; the time of 1e-09 s was used up."
     ).replace("1e-09", "1.00 × 10⁻⁹")
-    assert said.partition("assumed. ")[2] == claim
+    _, _, after_assumed = sentence.partition("assumed. ")
+    assert after_assumed == claim
     assert claim.replace("⁻⁹", "").split(". ")[0][:60] in plain(nothing.page)
     for row in nothing.document["numbers"].values():
         assert row["low"] is row["high"] is row["median"] is None
@@ -76,35 +77,37 @@ def test_without_time_page_1_has_no_range_and_says_why(nothing):
 
 def test_a_part_of_the_samples_is_a_range_of_that_part(monkeypatch):
     """Time that runs in predictions alone: two thirds are for samples, and facts and page say how many."""
-    now = [0.0]
-    own = module._numbers
+    clock = [0.0]
+    predict = module._numbers
 
     def slow(*arguments):
-        now[0] += 1.0
-        return own(*arguments)
+        clock[0] += 1.0
+        return predict(*arguments)
 
     results = hurried(60.0, 1e9)
     ends = sum(len(module.end_shares(one)) for one in module.uncertain_inputs(results.pair))
     results.effort = replace(results.effort, sample_seconds=1.0 + 3.0 * ends)
     monkeypatch.setattr(module, "_numbers", slow)
     with monkeypatch.context() as patch:
-        patch.setattr("floquet.orbits.deadline.time.process_time", lambda: now[0])
+        patch.setattr("floquet.orbits.deadline.time.process_time", lambda: clock[0])
         results.effort = replace(results.effort, samples=128)
-        found = results.uncertainty
+        ranges = results.uncertainty
     from validation.reporting.facts import facts_of
     from validation.reporting.page_one import page_one
 
-    assert found.attrs["taken"] == found.sizes["sample"] == 2 * ends >= 32
-    assert found.attrs["alone"] == found.sizes["input"]
+    assert ranges.attrs["taken"] == ranges.sizes["sample"] == 2 * ends >= 32
+    assert ranges.attrs["alone"] == ranges.sizes["input"]
     claims = facts_of(results)
     first = page_one(results)
-    said = f"the range is from {2 * ends} of 128 possible machines; the time of {1 + 3 * ends} s was used up"
-    assert claims["samples"].claim == said
+    sentence = (
+        f"the range is from {2 * ends} of 128 possible machines; the time of {1 + 3 * ends} s was used up"
+    )
+    assert claims["samples"].claim == sentence
     assert claims["samples"].value == 2.0 * ends
     assert claims["levels"].scope.inputs == f"{2 * ends} samples"
-    assert f"{said[0].upper()}{said[1:]}." in first.sure[1]
+    assert f"{sentence[0].upper()}{sentence[1:]}." in first.sure[1]
     assert first.numbers[0].range
-    low, _, high = found["dte_peak_to_peak_percentile"].to_numpy()
+    low, _, high = ranges["dte_peak_to_peak_percentile"].to_numpy()
     assert (first.numbers[0].low, first.numbers[0].high) == pytest.approx((low, high))
 
 

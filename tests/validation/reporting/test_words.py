@@ -77,8 +77,8 @@ def test_page_1_prints_the_numbers(written):
         unit = number["unit"]
         times = 100.0 if number["unit"] == "%" else 1.0
         low, high = number["low"], number["high"]
-        wide = low is not None and high - low > 0.1 * abs(number["value"])
-        digits = 5 if unit == "rpm" else 4 if unit == "%" else 2 if wide else 3
+        is_wide = low is not None and high - low > 0.1 * abs(number["value"])
+        digits = 5 if unit == "rpm" else 4 if unit == "%" else 2 if is_wide else 3
         digits = 2 if key == "trouble" else digits
         if number["value"] is None:
             assert value == "none"
@@ -105,7 +105,7 @@ def test_page_1_prints_the_numbers(written):
 def ends_of(printed):
     """Both ends of a printed range, each with the unit that stands once: "0.9 to 1.6 µm"."""
     low, high = re.fullmatch(r"(\S+) to (.+)", printed).groups()
-    unit = high.partition(" ")[2]
+    _, _, unit = high.partition(" ")
     return f"{low} {unit}".strip(), high
 
 
@@ -117,7 +117,8 @@ def assert_relative(text, low, high):
 
 
 def test_the_title(written):
-    p, (speed, _) = written.parameters, speed_of(written)
+    p = written.parameters
+    speed, _ = speed_of(written)
     recomputed.assert_says(
         plain(written.result.first.title),
         r"(\w+): spur gears (\d+)/(\d+), m ([\d.]+), b ([\d.]+) mm, (.*), ([\d.]+) N m \((.*)\)", p["name"],
@@ -128,14 +129,16 @@ def test_the_title(written):
 
 
 def test_the_verdict(written):
-    verdict, hazard, (speed, _) = written.document["verdict"], nearest_hazard(written), speed_of(written)
+    verdict = written.document["verdict"]
+    hazard = nearest_hazard(written)
+    speed, _ = speed_of(written)
     headline = plain(verdict["headline"])
     reason = plain(verdict["reason"])
     if hazard is None:
-        given = written.document["numbers"]
+        numbers = written.document["numbers"]
         ends = {
             name: np.percentile(written.data("uncertainty")[name].to_numpy(), [5.0, 95.0])
-            / given[name]["value"] - 1.0
+            / numbers[name]["value"] - 1.0
             for name in RANGED
         }  # fmt: skip
         widest = max(ends, key=lambda name: np.abs(ends[name]).max())
@@ -149,25 +152,25 @@ def test_the_verdict(written):
         for text, name in zip(re.fullmatch(pattern, headline).groups(), names, strict=True):
             assert_relative(text, *ends[name])
         where = f"From {0.1 * speed:g} to {2.0 * speed:g} rpm"
-        kept = "contact is kept, and no jump was found"
-        assert reason.endswith(f"{where} no speed is unstable, and {kept}.")
+        finding = "contact is kept, and no jump was found"
+        assert reason.endswith(f"{where} no speed is unstable, and {finding}.")
         resonance = written.document["facts"]["resonance"]
         near = abs(resonance["value"] / speed) <= 0.05
         runs = resonance["claim"] if near else "contact is kept and the motion is stable"
         start = "The pair runs on a resonance: " if near else "The pair runs smoothly: "
         assert reason.startswith(plain(start + runs))
         return
-    at = hazard[0]
+    jump_rpm = hazard[0]
     one = min(
         (written.data(name).isel(jump=k) for name in motions_of(written)
          for k in range(written.data(name).sizes["jump"])),
-        key=lambda jump: abs(float(jump["jump_speed_rpm"]) - at),
+        key=lambda jump: abs(float(jump["jump_speed_rpm"]) - jump_rpm),
     )  # fmt: skip
-    apart = 100.0 * (speed / at - 1.0)
+    apart = 100.0 * (speed / jump_rpm - 1.0)
     side = "above" if apart > 0.0 else "below"
     near = (
         f", {abs(apart):.0f} % {side} a jump"
-        if abs(speed / at - 1.0) > 0 and abs(at / speed - 1) <= 0.05
+        if abs(speed / jump_rpm - 1.0) > 0 and abs(jump_rpm / speed - 1) <= 0.05
         else ""
     )
     assert headline == f"Do not run here: the teeth lose contact{near}."
@@ -177,7 +180,7 @@ def test_the_verdict(written):
         r"jumps at (.*) to (.*) times \(rms\)\.",
         (of_motion(written, "prediction")["dynamic_factor"], "1"),
         hazard[1],
-        (at, "rpm"),
+        (jump_rpm, "rpm"),
         (float(one["jump_dte_rms_after"] / one["jump_dte_rms"]), "1"),
         digits=2,
     )
@@ -186,7 +189,7 @@ def test_the_verdict(written):
 def test_the_actions(written):
     actions = written.document["actions"]
     samples = written.data("uncertainty")
-    given = written.document["numbers"]["dte_peak_to_peak"]["value"]
+    as_given = written.document["numbers"]["dte_peak_to_peak"]["value"]
     hazard = nearest_hazard(written)
     swing = samples["dte_peak_to_peak_swing"].to_numpy()
     width = np.abs(swing[:, 1] - swing[:, 0])
@@ -196,7 +199,7 @@ def test_the_actions(written):
             plain(actions[0]["text"]), r"Do not pass (.*) at this torque", (hazard[0], "rpm"), digits=5
         )
         assert actions[1]["command"] == f"spurcheck response {written.document['gear_pair']} --map"
-    found = []
+    widths = []
     for gain in gains:
         low, high = ends_of(re.fullmatch(r"it moves the transmission error from (.*)", gain)[1])
         rounding = [
@@ -210,23 +213,24 @@ def test_the_actions(written):
         advised = next(one for one in actions if plain(one["gain"]) == gain)
         texts = {_ADVICE[kind_of(field)]["text"] for field in fields if kind_of(field) in _ADVICE}
         assert advised["text"] in texts | {"Narrow the range of this input"}
-        found.append(width[fits].max())
-    assert all(one >= 0.05 * given for one in found)
-    assert found == sorted(found, reverse=True)
-    if hazard is None and width.max() >= 0.05 * given:
-        assert found[0] == width.max(), "the input that matters most comes first"
+        widths.append(width[fits].max())
+    assert all(one >= 0.05 * as_given for one in widths)
+    assert widths == sorted(widths, reverse=True)
+    if hazard is None and width.max() >= 0.05 * as_given:
+        assert widths[0] == width.max(), "the input that matters most comes first"
 
 
 def test_how_sure(written):
     solved, inputs, measured = map(plain, written.document["how_sure"])
-    given, assumed = inputs_of(written)
-    counted = f"Inputs: {assumed} of {int(given) + int(assumed)} inputs are assumed."
-    found = written.data("uncertainty").attrs
-    if linear := found["linear"]:  # the range is not of motions with unilateral contact alone
-        taken = found["taken"]
-        kept = found["taken"] - found["refused"]
+    given_count, assumed_count = inputs_of(written)
+    counted = f"Inputs: {assumed_count} of {int(given_count) + int(assumed_count)} inputs are assumed."
+    attributes = written.data("uncertainty").attrs
+    if linear := attributes["linear"]:  # the range is not of motions with unilateral contact alone
+        taken = attributes["taken"]
+        computed = attributes["taken"] - attributes["refused"]
         words = (
-            f"The range is from {taken} possible machines; in {linear} of {kept} the linear motion stands in."
+            f"The range is from {taken} possible machines; "
+            f"in {linear} of {computed} the linear motion stands in."
         )
         counted = f"{counted} {words}"
     assert inputs == counted
@@ -234,8 +238,8 @@ def test_how_sure(written):
     assert solved == f"Solved right? {plain(written.sentences['second_program'])}"
     exact = [one for one in written.table("agreement") if one["fidelity"].startswith("exact")]
     assert all(one["difference"] <= one["limit"] for one in exact), "else the sentence of the next test"
-    said = prose(solved.removeprefix("Solved right? "))
-    assert said in " ".join(plain(written.page).split()), (
+    sentence = prose(solved.removeprefix("Solved right? "))
+    assert sentence in " ".join(plain(written.page).split()), (
         "page 1 has no powers of ten as a computer writes them"
     )
     first = of_motion(written, "prediction")
@@ -248,9 +252,9 @@ def test_how_sure(written):
     pattern = (
         rf"Yes: a second program agrees\. Its {RANGED[most]} differs most: (.*) beside (.*), by (.*) %\."
     )
-    there, here, share = re.fullmatch(pattern, said).groups()
-    recomputed.assert_printed(there, second[most], unit, 3)
-    recomputed.assert_printed(here, first[most], unit, 3)
+    of_second, of_prediction, share = re.fullmatch(pattern, sentence).groups()
+    recomputed.assert_printed(of_second, second[most], unit, 3)
+    recomputed.assert_printed(of_prediction, first[most], unit, 3)
     recomputed.assert_printed(share, 100.0 * apart[most], "1", 2)
 
 
@@ -265,7 +269,7 @@ def test_where_the_second_program_differs(written):
     ]
     size = np.ptp(written.data("prediction")["y_p"].to_numpy())
     vars(results)["check"] = replace(results.check, agreements=tuple(beyond))
-    found = {
+    differences = {
         one["quantity"]: one["difference"] for one in written.table("agreement") if "exact" in one["fidelity"]
     }
     name = "pinion displacement off the line of action"
@@ -275,7 +279,7 @@ def test_where_the_second_program_differs(written):
         r"Its .*",
         name,
         *((factor * size, "m") for factor in (1.3, 1.0)),
-        (100.0 * found[name], "1"),
+        (100.0 * differences[name], "1"),
         digits=2,
     )
 
@@ -302,7 +306,8 @@ class AboveAJump(Results):
 def test_page_1_prints_what_differs_from_the_prediction(written):
     """Jump, linear model and second program, moved so far that none can stand for the prediction."""
     results = copy.copy(known(written.document["gear_pair"]))
-    results.__class__, size = AboveAJump, results.prediction.peak_to_peak
+    results.__class__ = AboveAJump
+    size = results.prediction.peak_to_peak
     vars(results)["second"] = replace(results.second, peak_to_peak=1.7 * size)
     first = page_one(results)
     recomputed.assert_says(plain(first.numbers[0].second_shown), r"(.*)", (1.7 * size, "m"), digits=2)
@@ -319,10 +324,10 @@ def test_a_form_of_the_model_outside_the_range_is_named():
     budget = results.budget.copy(deep=True)
     size = results.prediction.peak_to_peak
     low, high = (size * (1.0 + end) for end in results.spread("dte_peak_to_peak"))
-    at = {key: place for place, key in enumerate(map(str, budget["row"].to_numpy()))}
-    budget["result"][at["contact"]] = 0.97 * low
-    budget["result"][at["second"]] = 1.04 * high
-    budget["result"][at["stiffness"]] = 0.5 * (low + high)
+    row_of = {key: place for place, key in enumerate(map(str, budget["row"].to_numpy()))}
+    budget["result"][row_of["contact"]] = 0.97 * low
+    budget["result"][row_of["second"]] = 1.04 * high
+    budget["result"][row_of["stiffness"]] = 0.5 * (low + high)
     vars(results)["budget"] = budget
     recomputed.assert_says(
         plain(_remark(results)),
@@ -334,28 +339,29 @@ def test_a_form_of_the_model_outside_the_range_is_named():
 @recomputes("claims", claim="claim", scope="scope", computed_by="by")
 def test_the_claims(written):
     """Each fact of report.json, and its row in the table of claims, against the saved data."""
-    found = written.document["facts"]
+    facts = written.document["facts"]
     table = written.table("claims")
     assert [plain(one["claim"]).lower() for one in table] == [
-        f"{plain(one['claim'])}.".lower() for one in found.values()
+        f"{plain(one['claim'])}.".lower() for one in facts.values()
     ]
-    assert [one["computed_by"] for one in table] == [one["computed_by"] for one in found.values()]
-    for one, fact in zip(table, found.values(), strict=True):
+    assert [one["computed_by"] for one in table] == [one["computed_by"] for one in facts.values()]
+    for one, fact in zip(table, facts.values(), strict=True):
         scope = fact["scope"]
         words = (scope["motion"], scope["supports"], f"teeth {scope['teeth']}", f"inputs {scope['inputs']}")
         speeds = [plain(f"{end:.5g}") for end in scope["speeds_rpm"]]
         start = f"at {speeds[0]} rpm" if speeds[0] == speeds[1] else f"from {speeds[0]} to {speeds[1]} rpm"
         assert plain(one["scope"]) == "; ".join([start, *words, scope["effort"]])
-    (speed, _), lost = speed_of(written), of_motion(written, "prediction")["least_force"] == 0.0
-    assert found["contact"]["claim"] == ("the teeth lose contact" if lost else "contact is kept")
-    here = [speed, speed]
+    speed, _ = speed_of(written)
+    lost = of_motion(written, "prediction")["least_force"] == 0.0
+    assert facts["contact"]["claim"] == ("the teeth lose contact" if lost else "contact is kept")
+    operating_only = [speed, speed]
     over = [0.1 * speed, 2.0 * speed]
-    for key, one in found.items():
+    for key, one in facts.items():
         scope = one["scope"]
         assert scope["effort"] == "small report"
         assert (scope["supports"], scope["teeth"]) == ("springs", "alike")
-        wide = key in ("unstable_speeds", "jumps", "resonance")
-        assert scope["speeds_rpm"] == pytest.approx(over if wide else here)
+        over_range = key in ("unstable_speeds", "jumps", "resonance")
+        assert scope["speeds_rpm"] == pytest.approx(over if over_range else operating_only)
     samples = written.data("uncertainty")
     unloaded = int((samples["least_force"].to_numpy() <= 0.0).sum())
     count = samples.sizes["sample"]
@@ -363,11 +369,11 @@ def test_the_claims(written):
     words = [f"{unloaded} of {count} possible machines lose contact"] if unloaded else []
     words += [f"{unstable} of {count} are unstable"] if unstable else []
     none = f"none of {count} possible machines loses contact or is unstable"
-    assert found["trouble"]["claim"] == (" and ".join(words) or none)
+    assert facts["trouble"]["claim"] == (" and ".join(words) or none)
     if not unstable:
-        assert found["trouble"]["value"] == pytest.approx(unloaded / count)
+        assert facts["trouble"]["value"] == pytest.approx(unloaded / count)
     order, share, side, hertz = re.fullmatch(
-        r"order (\d+) is ([\d.]+) % (above|below) the .* \((\d+) Hz\)", plain(found["resonance"]["claim"])
+        r"order (\d+) is ([\d.]+) % (above|below) the .* \((\d+) Hz\)", plain(facts["resonance"]["claim"])
     ).groups()
     frequencies = [one["frequency"]["value"] for one in written.table("modes")]
     frequency = min(frequencies, key=lambda one: abs(one - float(hertz)))
@@ -375,13 +381,14 @@ def test_the_claims(written):
     apart = int(order) * recomputed.mesh_frequency(written.parameters) / frequency - 1.0
     assert 100.0 * abs(apart) == pytest.approx(float(share), rel=0.06)
     assert side == ("above" if apart > 0.0 else "below")
-    assert found["resonance"]["value"] == pytest.approx(speed / (1.0 + apart) - speed)
+    assert facts["resonance"]["value"] == pytest.approx(speed / (1.0 + apart) - speed)
 
 
 def test_the_windows_of_contact_loss(written):
     """Windows that were searched: the ranges of the saved motions."""
     text = plain(written.sentences["contact_loss"])
-    shown = re.findall(r"([\d.]+) to ([\d.]+)(?= rpm;| and)", text.partition("lost at")[2])
+    _, _, after_lost_at = text.partition("lost at")
+    shown = re.findall(r"([\d.]+) to ([\d.]+)(?= rpm;| and)", after_lost_at)
     ranges = [written.data(name).attrs for name in motions_of(written)]
     for one in ranges:
         ends = one["speed_low_rpm"], one["speed_high_rpm"]
@@ -399,9 +406,8 @@ def test_forms_outside_the_range_are_named_and_no_others(written):
             outside = not first["low"] <= size <= first["high"]
             assert (f"{form}, " in remark) == outside
             if outside:
-                recomputed.assert_printed(
-                    remark.partition(f"{form}, ")[2].partition(" µm")[0] + " µm", size, "m", 3
-                )
+                _, _, after_form = remark.partition(f"{form}, ")
+                recomputed.assert_printed(after_form.partition(" µm")[0] + " µm", size, "m", 3)
 
 
 def test_findings(written):
@@ -411,10 +417,12 @@ def test_findings(written):
 
 
 def test_the_sentences_of_response_forces_and_contact_loss(written):
-    said, first, (speed, _) = written.sentences, of_motion(written, "prediction"), speed_of(written)
+    sentences = written.sentences
+    first = of_motion(written, "prediction")
+    speed, _ = speed_of(written)
     size = recomputed.amplitudes(written.data("prediction")["dte"].to_numpy())
     recomputed.assert_says(
-        plain(said["response"]),
+        plain(sentences["response"]),
         r"The prediction is (.*); its transmission error is (.*) peak to peak, most of it at mesh order "
         r"(\d+)\.",
         known(written.document["gear_pair"]).prediction.motion.value,
@@ -422,7 +430,7 @@ def test_the_sentences_of_response_forces_and_contact_loss(written):
         str(int(np.argmax(size)) + 1),
     )
     recomputed.assert_says(
-        plain(said["forces"]),
+        plain(sentences["forces"]),
         r"The largest mesh force is (.*) times the static (.*); one tooth pair carries at most (.*) times "
         r"the static force\.",
         (first["dynamic_factor"], "1"),
@@ -440,25 +448,27 @@ def test_the_sentences_of_response_forces_and_contact_loss(written):
         jumps = sum(written.data(name).sizes["jump"] for name in motions_of(written))
         count = ["one jump was" if jumps == 1 else f"{jumps} jumps were"]
     recomputed.assert_says(
-        plain(said["contact_loss"]), pattern, (0.1 * speed, "1"), (2.0 * speed, "1"), *count, digits=5
+        plain(sentences["contact_loss"]), pattern, (0.1 * speed, "1"), (2.0 * speed, "1"), *count, digits=5
     )
 
 
 def test_the_sentences_of_stability_losses_and_inputs(written):
-    said, (speed, _) = written.sentences, speed_of(written)
+    sentences = written.sentences
+    speed, _ = speed_of(written)
+    _, _, after_first_part = plain(sentences["stability"]).partition("; ")
     recomputed.assert_says(
-        plain(said["stability"]).partition("; ")[2].partition(" unstable")[0],
+        after_first_part.partition(" unstable")[0],
         r"at the given damping no speed from (.*) to (.*) rpm is",
         (0.1 * speed, "1"),
         (2.0 * speed, "1"),
         digits=5,
     )
     assert written.data("linear").attrs["spectral_radius"] < 1.0
-    assert "the linear motion is stable" in said["stability"]
+    assert "the linear motion is stable" in sentences["stability"]
     loss = 100.0 * (1.0 - losses_of_laws(pair_of(written))["mesh_efficiency"].to_numpy())
     supply = recomputed.power(written.parameters)
     recomputed.assert_says(
-        plain(said["losses"]), r"The pair loses (.*) of (.*); sliding alone takes (.*) to (.*) % by the "
+        plain(sentences["losses"]), r"The pair loses (.*) of (.*); sliding alone takes (.*) to (.*) % by the "
         r"different friction laws\.",
         ((1.0 - written.document["numbers"]["efficiency"]["value"]) * supply, "W"), (supply, "W"),
         (loss.min(), "1"), (loss.max(), "1"), digits=2,
@@ -470,7 +480,7 @@ def test_the_sentences_of_stability_losses_and_inputs(written):
         one for one in budget if one["error"] not in ("linear model, for charts", "form of the contact")
     ]
     recomputed.assert_says(
-        plain(said["how_sure"]),
+        plain(sentences["how_sure"]),
         r"With its uncertain inputs the transmission error lies from (\S+) to (\S+) µm \(5 to 95 %\)\. "
         r"The largest error of the prediction is “(.*)”\.",
         (1e6 * low, "1"),
@@ -489,7 +499,7 @@ def test_the_sentences_of_stability_losses_and_inputs(written):
     )
     assert (f"of which {refused} have no motion" in text) == (refused > 0)
     assert f". Contact is lost in {lost} of them, {unstable} are unstable" in text
-    assert said["evidence"] == "Every check of the program passes."
+    assert sentences["evidence"] == "Every check of the program passes."
 
 
 def test_every_uncertain_input_has_words_of_its_own(written):
@@ -508,17 +518,19 @@ def test_every_uncertain_input_has_words_of_its_own(written):
 
 def test_on_shafts_the_second_program_is_judged_on_the_shafts():
     """Agreement on springs says nothing about another machine: its numbers there are compared too."""
-    given = known("calm")
+    reference = known("calm")
     results = Results(pair("shafts", "19/41", 1450.0, 80.0).with_(shafts_of(30, 2e8)), SMALL)
-    like = given.prediction
-    vars(results) | {"check": given.check}
-    vars(results)["check"] = given.check
+    like = reference.prediction
+    vars(results) | {"check": reference.check}
+    vars(results)["check"] = reference.check
     vars(results)["like"] = like
     for factor, words in ((1.1, "by 10 %"), (0.8, "by 20 %")):
         vars(results)["second"] = replace(like, peak_to_peak=factor * like.peak_to_peak)
-        said = plain(second_program_words(results))
-        assert said.startswith("Yes: a second program agrees, on the springs of [bearings]. Its transmission")
-        assert said.endswith(f"{words} on the shafts.")
+        sentence = plain(second_program_words(results))
+        assert sentence.startswith(
+            "Yes: a second program agrees, on the springs of [bearings]. Its transmission"
+        )
+        assert sentence.endswith(f"{words} on the shafts.")
 
 
 def test_a_pair_too_slow_for_the_second_program_has_a_report():
@@ -541,7 +553,10 @@ def test_a_pair_too_slow_for_the_second_program_has_a_report():
 
 
 def shafts_of(diameter, stiffness):
-    ends = [{"position": at, "loa_stiffness": stiffness, "oloa_stiffness": stiffness} for at in (10, 150)]
+    ends = [
+        {"position": position, "loa_stiffness": stiffness, "oloa_stiffness": stiffness}
+        for position in (10, 150)
+    ]
     one = {"segments": [{"length": 160, "diameter": diameter}], "gear_position": 80, "bearings": ends}
     return {"shafts": {"damping_ratio": 0.03, "pinion": one, "gear": one}}
 
@@ -549,9 +564,9 @@ def shafts_of(diameter, stiffness):
 @cache
 def _not_varied():
     """Results of the calm pair without samples of its inputs."""
-    given = known("calm")
-    results = Results(given.pair, replace(SMALL, samples=0))
-    results.__dict__ |= {"check": given.check, "chart": given.chart}
+    reference = known("calm")
+    results = Results(reference.pair, replace(SMALL, samples=0))
+    results.__dict__ |= {"check": reference.check, "chart": reference.chart}
     return results
 
 
@@ -559,14 +574,14 @@ def _not_varied():
 def test_words_of_a_source_make_no_absolute_level(words):
     """They were a source like a measurement: 0 values assumed, and usable for absolute levels."""
     less = _not_varied()
-    said = Results(
+    reworded = Results(
         less.pair.with_({"sources": dict.fromkeys((*field_values(less.pair), "mesh.stiffness"), words)}),
         less.effort,
     )
-    said.__dict__ |= {name: vars(less)[name] for name in ("check", "chart", "like") if name in vars(less)}
-    assert said.inputs == less.inputs
-    assert page_one(said).verdict is page_one(less).verdict is Verdict.UNCERTAIN
-    table = next(one for one in inputs.write(said).blocks if one.key == "parameters")
+    reworded.__dict__ |= {name: vars(less)[name] for name in ("check", "chart", "like") if name in vars(less)}
+    assert reworded.inputs == less.inputs
+    assert page_one(reworded).verdict is page_one(less).verdict is Verdict.UNCERTAIN
+    table = next(one for one in inputs.write(reworded).blocks if one.key == "parameters")
     rows = [dict(zip(table.columns, row, strict=True)) for row in table.rows]
     assert all(row["source"] == words for row in rows)
     assert sum(isinstance(row["state"], Badge) for row in rows) == less.inputs[1] > 20
@@ -575,16 +590,16 @@ def test_words_of_a_source_make_no_absolute_level(words):
 @pytest.mark.parametrize("what", ["known", "stiff shafts", "slender shafts"])
 def test_more_information_never_gives_a_worse_verdict(what):
     """A pair on springs, and the same with every value known, and on shafts, where contact is kept too."""
-    given = known("calm")
+    reference = known("calm")
     changes = {
         "known": {"assumed": {}},
         "stiff shafts": shafts_of(60, 6e8),
         "slender shafts": shafts_of(20, 2e8),
     }
     less = _not_varied()
-    base = known_sizes(given.pair) if what == "known" else given.pair
+    base = known_sizes(reference.pair) if what == "known" else reference.pair
     more = Results(base.with_(changes[what]), less.effort)
-    more.__dict__ |= {"check": given.check, "chart": given.chart}  # on springs in both
+    more.__dict__ |= {"check": reference.check, "chart": reference.chart}  # on springs in both
     poorer = page_one(less)
     first = page_one(more)
     assert list(Verdict).index(first.verdict) <= list(Verdict).index(poorer.verdict)

@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 import lumped
 from validation.exchange.new_pair_file import new_pair_text
 from validation.plots.style import save
-from validation.reporting import build
+from validation.reporting import build, pictures
 from validation.reporting.effort import Effort
 from validation.reporting.results import Results
 
@@ -108,17 +108,17 @@ class Written:
     @cached_property
     def printed(self) -> dict[str, Printed]:
         """The tables of the page: of page 1 under "numbers", of the chapters under their names."""
-        found = {}
+        tables = {}
         for name, inside in re.findall(r'<table class="([\w ]+)">(.*?)</table>', self.page, flags=re.DOTALL):
             head, _, body = inside.partition("</thead>")
             caption = "".join(re.findall(r"<caption>(.*?)</caption>", head, flags=re.DOTALL))
             rows = re.findall(r"<tr>(.*?)</tr>", body, flags=re.DOTALL)
-            found[name.split()[0]] = Printed(
+            tables[name.split()[0]] = Printed(
                 plain(re.sub(r"<b>.*?</b>", "", caption)),
                 [plain(cell) for cell in re.findall(r"<th[^>]*>(.*?)</th>", head, flags=re.DOTALL)],
                 [[plain(c) for c in re.findall(r"<td[^>]*>(.*?)</td>", r, flags=re.DOTALL)] for r in rows],
             )
-        return found
+        return tables
 
 
 def plain(markup: str) -> str:
@@ -153,7 +153,7 @@ def write_report(
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(build, "FULL", SMALL)
-        patch.setattr(build, "save", keep)
+        patch.setattr(pictures, "save", keep)
         if results is not None:
             patch.setattr(build, "Results", lambda *_, **__: results)
         if same is not None:

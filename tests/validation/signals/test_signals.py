@@ -23,7 +23,9 @@ _WHEELS = [f"{gear}.{what}" for gear in ("pinion", "gear") for what in ("tip_rel
 PAIR = lumped.load_gear_pair("nasa_28_28").with_(
     {"pinion.teeth": 21, "mesh.relief": "ignored", "centre_distance": None, **dict.fromkeys(_WHEELS)}
 )
-Z1, Z2 = PAIR.pinion.teeth, PAIR.gear.teeth  # 21 and 28: 84 mesh cycles, 4 and 3 turns
+# 21 and 28: 84 mesh cycles, 4 and 3 turns
+Z1 = PAIR.pinion.teeth
+Z2 = PAIR.gear.teeth
 CYCLES = 84
 SAMPLES = 32
 
@@ -49,15 +51,15 @@ def added(*parts: Callable[[np.ndarray], np.ndarray]) -> Callable[[np.ndarray], 
 @pytest.mark.parametrize(("shaft", "order"), [("pinion", 7.0), ("gear", 7.0 * Z2 / Z1), ("mesh", 7.0 / Z1)])
 @pytest.mark.parametrize("derivative", [0, 2])
 def test_a_tone_has_one_order_on_each_shaft(shaft: str, order: float, derivative: int) -> None:
-    found = order_spectrum(result_of(tone(7, 3e-6)), shaft, derivative=derivative)
+    spectrum = order_spectrum(result_of(tone(7, 3e-6)), shaft, derivative=derivative)
     hertz = 7 * PAIR.operating.pinion_speed / (2.0 * np.pi)
-    loudest = found.isel(order=int(np.argmax(found["amplitude"].to_numpy())))
+    loudest = spectrum.isel(order=int(np.argmax(spectrum["amplitude"].to_numpy())))
     assert float(loudest["order"]) == pytest.approx(order)
     assert float(loudest["frequency"]) == pytest.approx(hertz)
     assert float(loudest["amplitude"]) == pytest.approx(3e-6 * (2.0 * np.pi * hertz) ** derivative)
-    rest = found["amplitude"].to_numpy()[found["order"].to_numpy() != float(loudest["order"])]
+    rest = spectrum["amplitude"].to_numpy()[spectrum["order"].to_numpy() != float(loudest["order"])]
     assert rest.max() < 1e-9 * float(loudest["amplitude"])
-    assert found["amplitude"].attrs["units"] == {0: "m", 2: "m/s**2"}[derivative]
+    assert spectrum["amplitude"].attrs["units"] == {0: "m", 2: "m/s**2"}[derivative]
 
 
 def test_amplitude_modulation_has_two_sidebands_of_half_its_depth() -> None:
@@ -73,12 +75,14 @@ def test_amplitude_modulation_has_two_sidebands_of_half_its_depth() -> None:
 
 
 def test_the_average_of_a_shaft_keeps_its_own_orders_only() -> None:
-    own = tone(5, 2e-6)
+    of_pinion = tone(5, 2e-6)
     other = tone(5 * Z1 / Z2, 1e-6)
-    kept = time_synchronous_average(result_of(added(own, other)), variable="dte", derivative=0)
-    u = kept["turn"].to_numpy() * Z1
-    np.testing.assert_allclose(kept["average"], own(u), atol=1e-18)
-    of_gear = time_synchronous_average(result_of(added(own, other)), "gear", variable="dte", derivative=0)
+    average = time_synchronous_average(result_of(added(of_pinion, other)), variable="dte", derivative=0)
+    u = average["turn"].to_numpy() * Z1
+    np.testing.assert_allclose(average["average"], of_pinion(u), atol=1e-18)
+    of_gear = time_synchronous_average(
+        result_of(added(of_pinion, other)), "gear", variable="dte", derivative=0
+    )
     np.testing.assert_allclose(of_gear["average"], other(of_gear["turn"].to_numpy() * Z2), atol=1e-18)
 
 
@@ -86,28 +90,28 @@ def test_errors_of_the_gear_leave_the_average_of_the_pinion_in_fixed_contacts_al
     # The hunting period brings every tooth of the gear to every tooth of the pinion: errors of zero mean
     # cancel where the motion is linear in them, and do not where a pair touches when its own gap closes.
     errors = np.sin(2.1 * np.arange(22)) * 20.0
-    off = {}
+    change = {}
     for contact, touch in (("prescribed", "linear"), ("loaded", "unilateral")):
         changes = {"gear.teeth": 22, "mesh.contact": contact, "centre_distance": None}
         pair = PAIR.with_(changes | {"pinion.deviations": {"index": [0.0] * Z1, "first_order": "steps"}})
         lists = {"index": list(errors - errors.mean()), "first_order": "steps"}
-        healthy, found = (
+        healthy, deviated = (
             time_synchronous_average(
                 lumped.steady_state(one, contact=touch, samples_per_cycle=8), variable="dte", derivative=0
             )["average"].to_numpy()
             for one in (pair, pair.with_({"gear.deviations": lists}))
         )
-        off[contact] = np.abs(found - healthy).max() / np.ptp(healthy)
-    assert off["prescribed"] < 1e-11
-    assert off["loaded"] > 0.01
+        change[contact] = np.abs(deviated - healthy).max() / np.ptp(healthy)
+    assert change["prescribed"] < 1e-11
+    assert change["loaded"] > 0.01
 
 
 def test_residual_and_difference_lose_the_mesh_and_its_first_sidebands() -> None:
     parts = [lambda u: 0.0 * u + 7.0, *map(tone, (1, 4, Z1 - 1, Z1, 2 * Z1 + 1))]
     average = time_synchronous_average(result_of(added(*parts)), variable="dte", derivative=0)
     u = average["turn"].to_numpy() * Z1
-    left = added(tone(1), tone(Z1 - 1), tone(2 * Z1 + 1), tone(4))
-    np.testing.assert_allclose(residual(average)["average"], left(u), atol=1e-12)
+    expected = added(tone(1), tone(Z1 - 1), tone(2 * Z1 + 1), tone(4))
+    np.testing.assert_allclose(residual(average)["average"], expected(u), atol=1e-12)
     np.testing.assert_allclose(difference(average)["average"], added(tone(1), tone(4))(u), atol=1e-12)
 
 
@@ -117,8 +121,10 @@ def test_moments_of_a_sine_and_of_an_impulse_train() -> None:
     beside = result_of(added(tone(Z1), tone(4, 0.1), tone(Z1 + 1, 0.3)))  # the difference leaves it out
     apart = indicators(beside, variable="dte", derivative=0).value.sel(indicator="M6A", record="pair")
     assert float(apart) == pytest.approx(2.5)
-    found = indicators(plain, variable="dte", derivative=0).value.sel(record="pair")
-    value = {name: float(found.sel(indicator=name)) for name in found["indicator"].to_numpy()}
+    indicator_values = indicators(plain, variable="dte", derivative=0).value.sel(record="pair")
+    value = {
+        name: float(indicator_values.sel(indicator=name)) for name in indicator_values["indicator"].to_numpy()
+    }
     assert value["FM4"] == pytest.approx(1.5)
     assert value["M6A"] == pytest.approx(2.5)
     assert value["RMS"] == pytest.approx(np.sqrt(0.505))

@@ -53,8 +53,8 @@ def undisturbed(study: Study, tmp_path_factory: pytest.TempPathFactory) -> bytes
 def replace_analysis(monkeypatch: pytest.MonkeyPatch) -> Callable[[Any], None]:
     """Put another function in the place of the geometry analysis, in this process."""
 
-    def put(function: Any) -> None:
+    def replace_evaluator(function: Any) -> None:
         changed = dataclasses.replace(ANALYSES["geometry"], compute=function)
         monkeypatch.setitem(ANALYSES, "geometry", changed)
 
-    return put
+    return replace_evaluator

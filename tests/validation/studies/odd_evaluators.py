@@ -8,14 +8,14 @@ import signal
 class Odd:
     """An evaluator that does something odd in one case."""
 
-    def __init__(self, inner, what, at):
+    def __init__(self, inner, what, odd_values):
         self.inner = inner
         self.what = what
-        self.at = at
+        self.odd_values = odd_values
         self.outputs = inner.outputs
 
     def __call__(self, values):
-        if values == self.at:
+        if values == self.odd_values:
             getattr(self, self.what)()
         return self.inner(values)
 

@@ -41,11 +41,13 @@ def test_samples_hit_every_stratum_of_every_axis_once(make_study, method, n):
 
 
 def test_sensitivity_blocks_swap_one_column_each(make_study):
-    n, d = 16, 3
+    n = 16
+    d = 3
     cases = sampled(make_study, method="sobol", samples=n, sensitivity=True)
     assert cases.count == n * (d + 2)
     blocks = cases.shares(np.arange(cases.count)).reshape(d + 2, n, d)
-    a, b = blocks[0], blocks[1]
+    a = blocks[0]
+    b = blocks[1]
     assert (a != b).all()
     for i in range(d):
         expected = a.copy()
@@ -86,7 +88,8 @@ def test_the_seed_decides_the_samples(make_study):
 
 
 SAMPLES = 512
-A, B = 7.0, 0.1
+A = 7.0
+B = 0.1
 AXES = [
     {"field": "operating.pinion_torque", "name": "x1", "low": 10.0, "high": 90.0},
     {"field": "mesh.damping_ratio", "name": "x2", "low": 0.0, "high": 0.1},
@@ -97,12 +100,13 @@ AXES = [
 def ishigami(variation, settings):
     """Ishigami and Homma's function of the three axes, each stretched to (-pi, pi)."""
     pair = variation.pair
-    given = (pair.operating.pinion_torque, pair.mesh.damping_ratio, pair.centre_distance * 1e3)
+    inputs = (pair.operating.pinion_torque, pair.mesh.damping_ratio, pair.centre_distance * 1e3)
     x = [
         math.pi * (2.0 * (value - axis["low"]) / (axis["high"] - axis["low"]) - 1.0)
-        for value, axis in zip(given, AXES, strict=True)
+        for value, axis in zip(inputs, AXES, strict=True)
     ]
-    value = math.sin(x[0]) + A * math.sin(x[1]) ** 2 + B * x[2] ** 4 * math.sin(x[0])
+    x1, x2, x3 = x
+    value = math.sin(x1) + A * math.sin(x2) ** 2 + B * x3**4 * math.sin(x1)
     return {"contact_ratio": value, "mesh_frequency": 3.0}
 
 
@@ -128,11 +132,11 @@ def result(make_study, tmp_path_factory):
 def test_indices_of_the_ishigami_function(result):
     assert result.sizes["case"] == SAMPLES * 5
     first, total = expected()
-    at = result.sel(output="contact_ratio")
-    assert list(at.axis.to_numpy()) == ["x1", "x2", "x3"]
+    indices = result.sel(output="contact_ratio")
+    assert list(indices.axis.to_numpy()) == ["x1", "x2", "x3"]
     # 512 quasi-random points: the error is below that of plain sampling, 1/sqrt(512) = 4 %.
-    np.testing.assert_allclose(at.sobol_first, first, atol=0.03)
-    np.testing.assert_allclose(at.sobol_total, total, atol=0.03)
+    np.testing.assert_allclose(indices.sobol_first, first, atol=0.03)
+    np.testing.assert_allclose(indices.sobol_total, total, atol=0.03)
 
 
 def test_a_constant_output_has_no_indices_and_says_so(result):
@@ -141,7 +145,8 @@ def test_a_constant_output_has_no_indices_and_says_so(result):
 
 
 def test_a_failed_case_leaves_the_indices_out_and_says_so(make_study, tmp_path):
-    axes = [*AXES[:2], {**AXES[2], "low": 88.0}]  # below 88.9 mm the teeth wedge
+    *others, distance = AXES
+    axes = [*others, {**distance, "low": 88.0}]  # below 88.9 mm the teeth wedge
     design = {"method": "sobol", "samples": 8, "sensitivity": True}
     summary = run_sweep(make_study(design=design, axes=axes), tmp_path / "out")
     result = read_results(tmp_path / "out")
@@ -160,15 +165,16 @@ def test_before_the_last_case_there_are_no_indices(make_study, tmp_path):
     design = {"method": "sobol", "samples": 8, "sensitivity": True}
     run_sweep(make_study(design=design, axes=AXES), tmp_path / "out", progress=progress)
     assert "sobol_first" in read_results(tmp_path / "out")
-    done, missing, found, text = seen[0]
-    assert (done, missing, found) == (1, 39, False)
+    done, missing, has_indices, text = seen[0]
+    assert (done, missing, has_indices) == (1, 39, False)
     assert text.endswith("39 are not computed yet")
 
 
 def test_indices_do_not_depend_on_the_unit():
     rng = np.random.default_rng(2)
     values = rng.random((1, 5 * 64))
-    one, other = indices(values, 3), indices(1e-9 * values + 5.0, 3)
+    one = indices(values, 3)
+    other = indices(1e-9 * values + 5.0, 3)
     # A range of 1e-9 about 5 keeps 16 - 10 = 6 digits; the estimators square differences of it.
     np.testing.assert_allclose(one[1], other[1], rtol=1e-5)
     for scale in (1e-200, 1e200):  # where squares vanish and overflow

@@ -39,11 +39,11 @@ def test_the_result_is_labelled_and_right(study, tmp_path):
         pair = load_gear_pair("nasa_28_28")
         for distance in (88.9, 89.4):
             for speed in result.operating_pinion_speed.to_numpy():
-                at = result.sel(operating_pinion_speed=speed, face_width=6.0, centre_distance=distance)
+                case = result.sel(operating_pinion_speed=speed, face_width=6.0, centre_distance=distance)
                 g = geometry(pair.with_(centre_distance=distance, operating__pinion_speed=speed))
-                assert float(at.contact_ratio) == g.contact_ratio
-                assert float(at.mesh_frequency) == g.mesh_frequency
-                assert int(at.status) == Status.OK
+                assert float(case.contact_ratio) == g.contact_ratio
+                assert float(case.mesh_frequency) == g.mesh_frequency
+                assert int(case.status) == Status.OK
 
 
 def test_failed_cases_are_recorded_and_the_others_go_on(study, tmp_path):

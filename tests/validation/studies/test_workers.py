@@ -25,13 +25,13 @@ def odd(study, monkeypatch):
     """Let case 41 of the study do something odd, in worker processes too; see ``odd_evaluators``."""
     from odd_evaluators import Odd
 
-    def put(what):
+    def use_odd(what):
         evaluator = StudyEvaluator.of(study)
         (values,) = CaseList(study).values([41])
         changed = SimpleNamespace(of=lambda study: Odd(evaluator, what, values))
         monkeypatch.setattr(runner, "StudyEvaluator", changed)
 
-    return put
+    return use_odd
 
 
 def test_processes_give_the_same_bytes_whatever_a_library_prints(study, tmp_path, odd, undisturbed):

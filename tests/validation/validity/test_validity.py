@@ -98,7 +98,7 @@ def test_a_sensible_pair_raises_no_doubt(name, speed):
     assert parameter_warnings(pair.with_(operating__pinion_speed=rpm)) == ()
 
 
-@pytest.mark.parametrize(("changes", "said"), [
+@pytest.mark.parametrize(("changes", "words"), [
     ({"bearings.gear.loa_stiffness": 300}, "Given in N/um? Then write '300 N/um'."),
     ({"operating.pinion_torque": 4875, "operating.pinion_speed": 56.5}, "Speed and torque swapped?"),
     ({"operating.pinion_speed": 1.45}, "Then write 1450."),
@@ -107,18 +107,25 @@ def test_a_sensible_pair_raises_no_doubt(name, speed):
     ({"pinion.roughness": "0.4 pm"}, "pinion.roughness = 4e-07 um is that of no flank"),
     ({"gear.tip_relief": {"amount": 0.02, "start_roll_angle": 24.0}}, "Then write '0.02 mm'."),
 ])  # fmt: skip
-def test_a_value_that_hardly_can_be_meant_is_named_with_its_cause(nasa_pair, changes, said):
-    found = parameter_warnings(nasa_pair.with_(changes))
-    assert any(said in one for one in found), found
+def test_a_value_that_hardly_can_be_meant_is_named_with_its_cause(nasa_pair, changes, words):
+    warnings = parameter_warnings(nasa_pair.with_(changes))
+    assert any(words in one for one in warnings), warnings
 
 
 def test_no_backlash_but_for_rounding_is_not_doubted():
     """The centre distance of standard gears is the mean of their pitch circles: 0.5 (17 + 53) / 2 mm."""
-    own = {"basic_rack.module": 0.5, "pinion.teeth": 17, "gear.teeth": 53, "operating.pinion_torque": 0.15}
-    own |= {f"{gear}.{key}": None for gear in ("pinion", "gear") for key in ("tip_relief", "mass", "inertia")}
-    own |= {"description": "", "mesh.backlash": 0, "operating.speed_range": None}
+    small_pair = {
+        "basic_rack.module": 0.5,
+        "pinion.teeth": 17,
+        "gear.teeth": 53,
+        "operating.pinion_torque": 0.15,
+    }
+    small_pair |= {
+        f"{gear}.{key}": None for gear in ("pinion", "gear") for key in ("tip_relief", "mass", "inertia")
+    }
+    small_pair |= {"description": "", "mesh.backlash": 0, "operating.speed_range": None}
     for centre_distance in (None, 17.5):
-        pair = load_gear_pair("nasa_28_28").with_(own | {"centre_distance": centre_distance})
+        pair = load_gear_pair("nasa_28_28").with_(small_pair | {"centre_distance": centre_distance})
         assert not any("backlash" in one for one in parameter_warnings(pair))
 
 

@@ -1,7 +1,7 @@
 """A measured record beside the prediction, with the uncertainties of record, inputs and numerics."""
 
-from validation.check.record.channel_comparison import ChannelComparison, PeakToPeak, Record
-from validation.check.record.comparing import compare_record
-from validation.check.record.record_comparison import RecordComparison
+from validation.check.record.channel import ChannelComparison, PeakToPeak, Record
+from validation.check.record.compare import compare_record
+from validation.check.record.comparison import RecordComparison
 
 __all__ = ["ChannelComparison", "PeakToPeak", "Record", "RecordComparison", "compare_record"]

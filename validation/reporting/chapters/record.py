@@ -6,8 +6,8 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from validation.check.record.channel_comparison import ChannelComparison, OrdersOfChannel, Record
-from validation.check.record.record_comparison import RecordComparison
+from validation.check.record.channel import ChannelComparison, OrdersOfChannel, Record
+from validation.check.record.comparison import RecordComparison
 from validation.plots.record import record_figure
 from validation.plots.style import scaled
 from validation.reporting.blocks import Badge, Block, Column, Content, Picture, Table, Text, table_of

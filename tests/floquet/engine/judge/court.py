@@ -121,7 +121,12 @@ def table(findings: Sequence[Finding]) -> str:
         "|---|---|---|---|---|---|---|---|",
     ]
     keys = dict.fromkeys((f.kind, f.route, f.certificate) for f in findings)
-    for kind, route, certificate in sorted(keys, key=lambda k: (KINDS.index(k[0]), k[1], k[2])):
+
+    def place(key):
+        kind, route, certificate = key
+        return KINDS.index(kind), route, certificate
+
+    for kind, route, certificate in sorted(keys, key=place):
         group = [f for f in findings if (f.kind, f.route, f.certificate) == (kind, route, certificate)]
         false = sum(f.ratio > 1.0 for f in group)
         wrong = sum(f.wrong for f in group)

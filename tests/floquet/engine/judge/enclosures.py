@@ -108,7 +108,7 @@ def energy_monodromy(system: RankOneSystem, period: float, zeta: float, gains: S
         u = arb_poly([-(low + high) / (high - low), 2 / ((high - low) * T)])  # of the time
         entries = [(r, m + r, polynomial(arb_poly([rate]))) for r in range(m)]
         for r in range(m):
-            own = [
+            spring_gain, damper_gain = [
                 sum(
                     (
                         arb_poly([arb(float(x)) for x in poly[i, r]]) * arb(float(g))
@@ -123,8 +123,8 @@ def energy_monodromy(system: RankOneSystem, period: float, zeta: float, gains: S
                 still = arb(float(system.stiffness[r, c]))
                 moving = arb(float(system.damping[r, c]))
                 moving += arb(float(G[r, c])) / T
-                spring = own[0](u) * v + still
-                damper = own[1](u) * v * arb(float(zeta)) + moving
+                spring = spring_gain(u) * v + still
+                damper = damper_gain(u) * v * arb(float(zeta)) + moving
                 entries.append((m + r, c, polynomial(spring * (-1 / rate))))
                 entries.append((m + r, m + c, polynomial(damper * arb(-1))))
         pieces.append(Piece(low * T, (high - low) * T, entries))

@@ -66,7 +66,7 @@ def pieces(pair: GearPair, cycle: MeshCycle | None = None) -> list[Piece]:
                 if 0 < phase - i < 1:
                     marks.add(phase - i)
     ordered = sorted(marks)
-    found = []
+    pieces_of_cycle = []
     for low, high in pairwise(ordered):
         middle = (low + high) / 2
         w, wd = ([arb_poly([0]) for _ in range(3)] for _ in range(2))
@@ -82,14 +82,14 @@ def pieces(pair: GearPair, cycle: MeshCycle | None = None) -> list[Piece]:
         entries = [(r, 3 + r, polynomial(arb_poly([unit_rate]))) for r in range(3)]
         for r in range(3):
             for c in range(3):
-                own = [(w[r], arb(1) / unit_rate, supports), (wd[r], arb(1), dampers)]
-                for shift, (gain, unit, constant) in zip((0, 3), own, strict=True):
+                terms = [(w[r], arb(1) / unit_rate, supports), (wd[r], arb(1), dampers)]
+                for shift, (gain, unit, constant) in zip((0, 3), terms, strict=True):
                     total = gain * arb_poly([deflection[c]]) - arb_poly([constant[r] if r == c else 0])
                     # The polynomials are over the phase: time over the period.
                     scaled = (total * arb_poly([unit]))(arb_poly([0, 1 / period]))
                     entries.append((3 + r, shift + c, polynomial(scaled)))
-        found.append(Piece(ball(low) * period, ball(high - low) * period, entries))
-    return found
+        pieces_of_cycle.append(Piece(ball(low) * period, ball(high - low) * period, entries))
+    return pieces_of_cycle
 
 
 def _over(function: PathFunction, first: fmpq, pitch: fmpq, i: int, middle: fmpq) -> arb_poly:

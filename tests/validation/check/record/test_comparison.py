@@ -8,9 +8,10 @@ import pytest
 
 import lumped
 from lumped.errors import ParameterError
+from lumped.model.results import plain
 from tests.unlike_pairs import unlike_pair
-from tests.validation.records.dynamic_records import dynamic_record, motion
-from validation.check.record.channel_comparison import (
+from tests.validation.check.record.dynamic_motions import dynamic_record, motion
+from validation.check.record.channel import (
     NOT_VARIED,
     SHARE,
     UNKNOWN,
@@ -18,7 +19,7 @@ from validation.check.record.channel_comparison import (
     PeakToPeak,
     Record,
 )
-from validation.check.record.comparing import compare_record
+from validation.check.record.compare import compare_record
 from validation.exchange.new_pair_file import new_pair
 from validation.prediction.motion import predicted
 from validation.prediction.uncertainty import Varied
@@ -65,10 +66,12 @@ def test_contact_is_lost_in_one_of_the_pairs():
 def test_a_right_record_confirms(name, quantities):
     # Another phase, 50.317 samples a mesh cycle; 400 mesh cycles hold many engagements of tooth pair A.
     for seed, phase in ((1, 0.37), (2, 0.81)):
-        found = compared(name, quantities, cycles=400, seed=seed, phase=phase)
-        assert [one.verdict for one in found.channels] == len(quantities) * [Record.CONFIRMS], found.words
-        assert min(one.explained for one in found.channels) > 0.995
-        assert found.shift % 1.0 == pytest.approx(phase, abs=2e-3)
+        comparison = compared(name, quantities, cycles=400, seed=seed, phase=phase)
+        assert [one.verdict for one in comparison.channels] == len(quantities) * [Record.CONFIRMS], (
+            comparison.words
+        )
+        assert min(one.explained for one in comparison.channels) > 0.995
+        assert comparison.shift % 1.0 == pytest.approx(phase, abs=2e-3)
         assert compared(name, quantities, cycles=400, samples=varied(name)).verdict is Record.CONFIRMS
 
 
@@ -77,8 +80,8 @@ def test_a_right_record_confirms(name, quantities):
 def test_one_percent_of_noise_changes_no_verdict(name, noise):
     for change, verdict in ((None, Record.CONFIRMS), (flip("x_p"), Record.CONTRADICTS)):
         for seed in range(5):
-            found = compared(name, noise=noise, change=change, seed=seed)
-            assert found.verdict is verdict, found.words
+            comparison = compared(name, noise=noise, change=change, seed=seed)
+            assert comparison.verdict is verdict, comparison.words
 
 
 def flip(name):
@@ -93,32 +96,32 @@ def test_a_pure_third_order_of_the_right_size_contradicts(name):
         return 0.5 * swing * np.sin(6.0 * np.pi * u)
 
     for samples in (None, varied(name)):
-        found = compared(name, ("dte",), change=third, samples=samples, noise=0.005)
-        assert abs(found.error) < 0.02 * swing  # the size alone says nothing
-        assert found.verdict is Record.CONTRADICTS
-        assert not found.leading.contradicts_size
-        assert "Order 3 is" in found.words or "Order 1 is" in found.words
+        comparison = compared(name, ("dte",), change=third, samples=samples, noise=0.005)
+        assert abs(comparison.error) < 0.02 * swing  # the size alone says nothing
+        assert comparison.verdict is Record.CONTRADICTS
+        assert not comparison.leading.contradicts_size
+        assert "Order 3 is" in comparison.words or "Order 1 is" in comparison.words
 
 
 @pytest.mark.parametrize("name", PAIRS)
 @pytest.mark.parametrize("factor", [1.0 / 0.73, 0.7])
 def test_a_wrong_size_contradicts_and_is_told_in_percent_of_the_measured(name, factor):
     for samples in (None, varied(name)):
-        found = compared(name, change=lambda q, values, u: factor * values, samples=samples)
-        assert found.verdict is Record.CONTRADICTS, found.words
-        assert found.peak_to_peak.percent == pytest.approx(100.0 * (1.0 / factor - 1.0), abs=1.5)
-        assert "27 % too low" in found.words if factor > 1.0 else "43 % too high" in found.words
-        assert "Order" not in found.words  # the shape is right
-        assert ("not varied" in found.words) == (samples is None)
+        comparison = compared(name, change=lambda q, values, u: factor * values, samples=samples)
+        assert comparison.verdict is Record.CONTRADICTS, comparison.words
+        assert comparison.peak_to_peak.percent == pytest.approx(100.0 * (1.0 / factor - 1.0), abs=1.5)
+        assert "27 % too low" in comparison.words if factor > 1.0 else "43 % too high" in comparison.words
+        assert "Order" not in comparison.words  # the shape is right
+        assert ("not varied" in comparison.words) == (samples is None)
 
 
 def test_a_record_far_off_contradicts_without_varied_inputs():
     # 12 um off: the fault was that inputs that are not varied hid it.
     for name in ("19/41", "fzg_c"):
         swing = motion_of(name).peak_to_peak
-        found = compared(name, ("dte",), change=lambda q, v, u, swing=swing: v * (1.0 + 12e-6 / swing))
-        assert found.error == pytest.approx(-12e-6, rel=0.02)
-        assert found.verdict is Record.CONTRADICTS
+        comparison = compared(name, ("dte",), change=lambda q, v, u, swing=swing: v * (1.0 + 12e-6 / swing))
+        assert comparison.error == pytest.approx(-12e-6, rel=0.02)
+        assert comparison.verdict is Record.CONTRADICTS
 
 
 @pytest.mark.parametrize("name", PAIRS)
@@ -130,11 +133,15 @@ def test_a_channel_in_the_wrong_phase_or_sign_contradicts(name, samples):
         return motion(prediction, "x_p", u - 0.1) if quantity == "x_p" else values
 
     for change in (late, flip("x_p"), flip("bearing_force_y_g")):
-        found = compared(name, change=change, samples=varied(name) if samples else None)
-        sizes = [abs(one.peak_to_peak.percent) for one in found.channels]
+        comparison = compared(name, change=change, samples=varied(name) if samples else None)
+        sizes = [abs(one.peak_to_peak.percent) for one in comparison.channels]
         assert max(sizes) < 2.0  # peaks to peak are right
-        assert found.verdict is Record.CONTRADICTS, found.words
-        assert "degrees" in found.words or "opposite sign" in found.words or "Order" in found.words
+        assert comparison.verdict is Record.CONTRADICTS, comparison.words
+        assert (
+            "degrees" in comparison.words
+            or "opposite sign" in comparison.words
+            or "Order" in comparison.words
+        )
 
 
 def test_the_order_of_the_channels_does_not_matter():
@@ -156,13 +163,13 @@ def test_a_noisy_record_is_too_uncertain_and_never_contradicts():
 
 def test_noise_is_no_agreement_where_the_inputs_were_varied():
     # Close enough by chance, with inputs that leave little: the noise alone decides.
-    found = [
+    comparisons = [
         compared(
             "fzg_c", ("dte",), noise=0.7, cycles=20, per_cycle=20.3, seed=seed, samples=varied("fzg_c", 0.01)
         )
         for seed in range(12)
     ]
-    close = [one for one in found if abs(one.peak_to_peak.percent) < 100.0 * SHARE]
+    close = [one for one in comparisons if abs(one.peak_to_peak.percent) < 100.0 * SHARE]
     assert close
     assert {one.verdict for one in close} == {Record.TOO_UNCERTAIN}
     assert all(one.leading.noisy for one in close)
@@ -175,37 +182,37 @@ def test_more_of_a_noisy_record_is_certain():
 
 def test_inputs_that_leave_much_neither_confirm_nor_contradict():
     many = varied("25/103", 0.6)
-    found = compared("25/103", ("dte",), change=lambda q, v, u: 1.3 * v, samples=many)
-    assert found.verdict is Record.TOO_UNCERTAIN
-    assert "known to" in found.words
-    assert 2.0 * found.uncertainty > UNKNOWN * found.measured
+    comparison = compared("25/103", ("dte",), change=lambda q, v, u: 1.3 * v, samples=many)
+    assert comparison.verdict is Record.TOO_UNCERTAIN
+    assert "known to" in comparison.words
+    assert 2.0 * comparison.uncertainty > UNKNOWN * comparison.measured
     # A record that is met is met, whatever the inputs could have done.
     assert compared("25/103", ("dte",), samples=many).verdict is Record.CONFIRMS
 
 
 def test_without_varied_inputs_a_moderate_difference_is_no_verdict():
     # Between SHARE and twice NOT_VARIED.
-    found = compared("19/41", ("dte",), change=lambda q, v, u: v / 0.82)
-    assert SHARE < abs(found.error) / found.measured < 2.0 * NOT_VARIED
-    assert found.verdict is Record.TOO_UNCERTAIN
-    assert "not varied" in found.words
+    comparison = compared("19/41", ("dte",), change=lambda q, v, u: v / 0.82)
+    assert SHARE < abs(comparison.error) / comparison.measured < 2.0 * NOT_VARIED
+    assert comparison.verdict is Record.TOO_UNCERTAIN
+    assert "not varied" in comparison.words
 
 
 def test_inputs_move_the_prediction_by_as_much_as_their_samples_do():
     name = "fzg_c"
-    given = motion_of(name)
+    nominal = motion_of(name)
     samples = varied(name)
-    found = compared(name, ("dte",), samples=samples).peak_to_peak
-    moves = [one.peak_to_peak - given.peak_to_peak for one in samples.samples]
-    assert found.inputs == pytest.approx(np.sqrt(np.mean(np.square(moves))), rel=5e-3)
+    peak_to_peak = compared(name, ("dte",), samples=samples).peak_to_peak
+    moves = [one.peak_to_peak - nominal.peak_to_peak for one in samples.samples]
+    assert peak_to_peak.inputs == pytest.approx(np.sqrt(np.mean(np.square(moves))), rel=5e-3)
 
 
 def test_a_phase_that_all_channels_share_is_no_uncertainty_of_the_inputs():
     # The same motion a fifth of a mesh cycle later: a record would be shifted by as much.
-    given = motion_of("25/103")
-    later = dataclasses.replace(given, cycle=given.cycle.roll(time=102, roll_coords=False))
-    found = compared("25/103", samples=Varied(given, (later,)))
-    for one in found.channels:
+    nominal = motion_of("25/103")
+    later = dataclasses.replace(nominal, plain=plain(nominal.cycle.roll(time=102, roll_coords=False)))
+    comparison = compared("25/103", samples=Varied(nominal, (later,)))
+    for one in comparison.channels:
         assert np.sqrt(one.by_inputs.max()) < 1e-3 * one.scale
 
 
@@ -244,23 +251,23 @@ def test_the_size_alone_turns_the_verdict(sizes, verdict):
 
 
 def test_three_uncertainties_add_as_squares():
-    found = PeakToPeak(4e-6, 5e-6, record=2e-7, inputs=1e-7, numerical=2e-7)
-    assert found.error == pytest.approx(1e-6)
-    assert found.u_val == pytest.approx(3e-7)
-    assert found.percent == pytest.approx(25.0)
+    peak_to_peak = PeakToPeak(4e-6, 5e-6, record=2e-7, inputs=1e-7, numerical=2e-7)
+    assert peak_to_peak.error == pytest.approx(1e-6)
+    assert peak_to_peak.u_val == pytest.approx(3e-7)
+    assert peak_to_peak.percent == pytest.approx(25.0)
 
 
 def test_orders_have_the_amplitudes_and_phases_that_were_put_in():
     def change(quantity, values, u):
         return 3e-6 * np.cos(2 * np.pi * u) + 1e-6 * np.cos(2 * np.pi * 4 * u + 0.5)
 
-    found = compared("25/103", ("dte",), change=change, noise=0.003)
-    orders = found.orders.sel(channel="dte")
+    comparison = compared("25/103", ("dte",), change=change, noise=0.003)
+    orders = comparison.orders.sel(channel="dte")
     for order, size in ((1, 3e-6), (4, 1e-6)):
         one = orders.sel(order=order)
         assert float(one["measured"]) == pytest.approx(size, abs=4.0 * float(one["measured_deviation"]))
     # Unrelated to the common shift: the phase of order 4 less four times that of order 1.
-    leading = found.leading.measured
+    leading = comparison.leading.measured
     turn = np.angle(leading.values[leading.orders == 4] * leading.values[leading.orders == 1].conj() ** 4)
     assert turn[0] % (2 * np.pi) == pytest.approx((0.5 + 2 * np.pi * (4 - 4) * 0.37) % (2 * np.pi), abs=0.05)
 
@@ -272,11 +279,11 @@ def test_teeth_that_differ_are_compared_by_their_mean_mesh_cycle():
     # Two hunting periods, and the same of a record that is no whole number of them.
     for cycles in (2 * count, 3.4 * count):
         made = dynamic_record(prediction, ("dte", "x_p"), cycles=cycles)
-        found = compare_record(made, prediction)
-        assert found.verdict is Record.CONFIRMS, found.words
-        assert found.mesh_cycles == count
+        comparison = compare_record(made, prediction)
+        assert comparison.verdict is Record.CONFIRMS, comparison.words
+        assert comparison.mesh_cycles == count
     # Mesh orders alone: the swing over a revolution is larger.
-    assert found.measured < 0.5 * prediction.peak_to_peak
+    assert comparison.measured < 0.5 * prediction.peak_to_peak
     wrong = dynamic_record(prediction, ("dte", "x_p"), cycles=2 * count, change=flip("x_p"))
     assert compare_record(wrong, prediction).verdict is Record.CONTRADICTS
 
@@ -285,17 +292,19 @@ def test_teeth_that_differ_are_compared_by_their_mean_mesh_cycle():
 def test_a_speed_stated_a_little_wrong_is_found(name):
     prediction = motion_of(name)
     made = dynamic_record(prediction, SEVERAL, cycles=800)
-    for off in (-0.003, 0.0008):
-        found = compare_record(dataclasses.replace(made, places=made.places / (1.0 + off)), prediction)
-        assert found.verdict is Record.CONFIRMS, found.words
+    for speed_error in (-0.003, 0.0008):
+        comparison = compare_record(
+            dataclasses.replace(made, places=made.places / (1.0 + speed_error)), prediction
+        )
+        assert comparison.verdict is Record.CONFIRMS, comparison.words
 
 
-@pytest.mark.parametrize("off", [-0.03, 0.02])
-def test_samples_of_another_speed_are_refused_with_that_speed(off):
+@pytest.mark.parametrize("speed_error", [-0.03, 0.02])
+def test_samples_of_another_speed_are_refused_with_that_speed(speed_error):
     prediction = motion_of("19/41")
     made = dynamic_record(prediction, SEVERAL)
-    wrong = dataclasses.replace(made, places=made.places / (1.0 + off))
-    with pytest.raises(ParameterError, match=f"about {str(1450 * (1 + off))[:3]}"):
+    wrong = dataclasses.replace(made, places=made.places / (1.0 + speed_error))
+    with pytest.raises(ParameterError, match=f"about {str(1450 * (1 + speed_error))[:3]}"):
         compare_record(wrong, prediction)
 
 
@@ -311,16 +320,16 @@ def test_a_record_of_something_else_is_refused(changes, match):
 
 def test_samples_at_few_phases_show_few_orders():
     # 10 samples in every mesh cycle: 3 orders, over which both peaks to peak are.
-    found = compared("19/41", ("dte",), per_cycle=10, noise=0.0, cycles=80)
-    assert found.leading.measured.orders.max() <= 3
-    assert found.verdict is not Record.CONTRADICTS
+    comparison = compared("19/41", ("dte",), per_cycle=10, noise=0.0, cycles=80)
+    assert comparison.leading.measured.orders.max() <= 3
+    assert comparison.verdict is not Record.CONTRADICTS
 
 
 def test_the_table_is_what_the_channels_say():
-    found = compared("31/57 contact lost", change=flip("x_p"))
-    table = found.table.sel(channel="x_p")
-    own = next(one for one in found.channels if one.name == "x_p")
-    assert float(table["explained"]) == own.explained < 0.5
+    comparison = compared("31/57 contact lost", change=flip("x_p"))
+    table = comparison.table.sel(channel="x_p")
+    channel = next(one for one in comparison.channels if one.name == "x_p")
+    assert float(table["explained"]) == channel.explained < 0.5
     assert str(table["verdict"].item()) == "CONTRADICTS"
-    assert found.table.attrs["verdict"] == "CONTRADICTS"
-    assert float(table["worst_order"]) in own.measured.orders
+    assert comparison.table.attrs["verdict"] == "CONTRADICTS"
+    assert float(table["worst_order"]) in channel.measured.orders

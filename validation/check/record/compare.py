@@ -29,14 +29,14 @@ from validation.check.curve_orders import (
 from validation.check.curves import Channel, Curves
 from validation.check.mesh_frequency import mesh_frequency, nominal_cycles, shown_speed
 from validation.check.motion_curves import MotionCurves
-from validation.check.record.channel_comparison import (
+from validation.check.record.channel import (
     NOT_VARIED,
     SHARE,
     ChannelComparison,
     PeakToPeak,
     noise_factor,
 )
-from validation.check.record.record_comparison import RecordComparison
+from validation.check.record.comparison import RecordComparison
 from validation.prediction.motion import Prediction
 from validation.prediction.uncertainty import Varied
 from validation.signals.complex_orders import ComplexOrders, channel_scale, common_shift

@@ -14,7 +14,7 @@ import numpy as np
 import xarray as xr
 
 from lumped.labelling import labelled_dataset
-from validation.check.record.channel_comparison import ChannelComparison, PeakToPeak, Record, apart_words
+from validation.check.record.channel import ChannelComparison, PeakToPeak, Record, apart_words
 
 #: Unit attribute of a variable whose channels differ in their unit: each channel is in its SI unit, which the
 #: variable ``units`` of the dataset names.

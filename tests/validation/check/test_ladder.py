@@ -1,0 +1,144 @@
+"""Does the ladder separate two faults, prefer fixed values, and stay the same on other channels and noise?"""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import lumped
+from tests.unlike_pairs import unlike_pair
+from tests.validation.check.test_explanations import COULOMB, LIMIT, changed, sampled
+from validation.check.explanations.cause import Variant
+from validation.check.explanations.physics import Physics, motion_of
+from validation.check.explanations.registry import EXPLANATIONS
+from validation.check.ladder import climb
+from validation.check.problem import Problem
+from validation.check.reference import lumped_motion
+from validation.check.search import Search, residual_of
+
+CHANNELS = ("dte", "x_p", "y_g", "mesh_force", "bearing_force_y_g")
+
+
+@pytest.fixture(scope="module")
+def pair():
+    """A pair in which nothing is symmetric."""
+    return lumped.load_gear_pair("high_contact_ratio_29_47").with_(COULOMB)
+
+
+@pytest.fixture(scope="module")
+def motions():
+    """Motions of changed models, shared by the cases."""
+    return {}
+
+
+def ladder_of(pair, curves, motions, budget=60.0):
+    """The ladder of curves."""
+    problem = Problem.of(pair, curves, lumped_motion(pair))
+    return climb(problem, limit=LIMIT, budget=budget, motions=motions)
+
+
+def names(ladder):
+    """Names of the steps."""
+    return [step.name for step in ladder.steps]
+
+
+def test_two_faults_are_both_recovered(pair, motions):
+    other = motion_of(pair.with_({"mesh.stiffness_factor": 1.2}), Physics(friction=-1.0), None)
+    ladder = ladder_of(pair, sampled(other, CHANNELS), motions)
+    assert sorted(names(ladder)) == ["friction sign", "mesh stiffness"]
+    factor = next(step.factor for step in ladder.steps if step.name == "mesh stiffness")
+    assert factor == pytest.approx(1.2, rel=0.01)
+    assert ladder.start > ladder.steps[0].misfit > ladder.steps[1].misfit
+
+
+def test_a_wrong_sign_that_hides_the_stiffness(pair, motions):
+    """Neither step alone lowers the misfit by much: both are tried together."""
+    other = lumped_motion(pair.with_({"mesh.stiffness_factor": 0.7}))
+    curves = changed(sampled(other, CHANNELS), ("y_g",), lambda v: -v)
+    assert sorted(names(ladder_of(pair, curves, motions))) == ["mesh stiffness", "sign of a channel"]
+
+
+def test_a_fixed_value_beats_a_free_factor(pair, motions):
+    other = lumped_motion(pair.with_({"mesh.stiffness_factor": 2.0}))
+    first = ladder_of(pair, sampled(other, CHANNELS), motions).steps[0]
+    assert first.name == "series stiffness of both teeth"
+    assert "mesh stiffness" in [one.name for one in first.alternatives]
+    assert first.sentence.startswith("Compatible with ")
+
+
+def test_explanations_of_one_motion_are_named_together(pair, motions):
+    """Masses and inertias times a factor are a density."""
+    cause = EXPLANATIONS["density"]
+    variant = cause.change(Variant(pair), 1.5)
+    other = motion_of(variant.pair, variant.physics, None)
+    first = ladder_of(pair, sampled(other, ("dte", "theta_p")), motions).steps[0]
+    assert "density" in [first.name, *(one.name for one in first.alternatives)]
+
+
+@pytest.mark.parametrize("channels", [CHANNELS[::-1], CHANNELS[:2], ("bearing_force_y_g", "dte")])
+def test_order_and_subset_of_channels_do_not_matter(pair, motions, channels):
+    other = lumped_motion(pair.with_({"mesh.stiffness_factor": 1.2}))
+    ladder = ladder_of(pair, sampled(other, channels), motions)
+    assert names(ladder) == ["mesh stiffness"]
+    assert ladder.steps[0].factor == pytest.approx(1.2, rel=0.01)
+
+
+def test_noise_changes_nothing(pair, motions):
+    random = np.random.default_rng(5)
+    other = motion_of(pair, Physics(friction=-1.0), None)
+    curves = changed(
+        sampled(other, CHANNELS), CHANNELS, lambda v: v + 0.01 * np.std(v) * random.standard_normal(v.size)
+    )
+    assert names(ladder_of(pair, curves, motions)) == ["friction sign"]
+
+
+def test_sound_curves_have_no_step(pair, motions):
+    ladder = ladder_of(pair, sampled(lumped_motion(pair), CHANNELS), motions)
+    assert ladder.steps == ()
+    assert ladder.runs == 0
+
+
+def test_an_entry_that_is_missing_is_not_named(pair, motions, monkeypatch):
+    without = {name: cause for name, cause in EXPLANATIONS.items() if name != "friction sign"}
+    monkeypatch.setattr("validation.check.search.EXPLANATIONS", without)
+    other = motion_of(pair, Physics(friction=-1.0), None)
+    ladder = ladder_of(pair, sampled(other, CHANNELS), motions, budget=3.0)
+    assert "friction sign" not in names(ladder)
+    assert not ladder.steps or ladder.steps[-1].misfit > 0.2 * LIMIT
+
+
+def test_the_budget_cuts_the_search(pair):
+    other = lumped_motion(pair.with_({"mesh.stiffness_factor": 1.2}))
+    ladder = ladder_of(pair, sampled(other, CHANNELS), {}, budget=0.3)
+    assert not ladder.complete
+    assert ladder.runs < 100
+
+
+def test_residual_is_the_misfit(pair):
+    other = lumped_motion(unlike_pair("contact_ratio_1_1_large_shifts"))
+    problem = Problem.of(pair, sampled(other, CHANNELS), lumped_motion(pair))
+    assert np.linalg.norm(residual_of(problem.misfit)) == pytest.approx(problem.misfit.value, rel=1e-12)
+
+
+def test_altered_models_agree_with_the_prediction(pair):
+    """Prescribed contact in which all teeth push: the linear motion is the motion with unilateral contact."""
+    alteration = motion_of(pair, Physics(), None).samples("dte")
+    prediction = lumped_motion(pair).samples("dte")
+    assert np.abs(alteration - prediction).max() < 1e-5 * np.ptp(prediction)
+
+
+def test_reversed_friction_is_that_of_the_printed_signs(pair):
+    """Eq. 9 as printed is the friction force on the gear reversed."""
+    altered = motion_of(pair, Physics(force_gear=-1.0), None).samples("y_g")
+    printed = lumped.steady_state(pair, contact="linear", as_printed=(9,))["y_g"].to_numpy()
+    assert np.abs(altered - printed).max() < 1e-6 * np.ptp(printed)
+
+
+def test_the_noise_of_curves_is_measured(pair):
+    random = np.random.default_rng(2)
+    motion = lumped_motion(pair)
+    curves = sampled(motion, CHANNELS)
+    clean = Search(Problem.of(pair, curves, motion), 1.0).floor(LIMIT)
+    noisy = changed(curves, CHANNELS, lambda v: v + 0.3 * np.std(v) * random.standard_normal(v.size))
+    assert clean < 1.2 * LIMIT / 50.0
+    assert Search(Problem.of(pair, replace(noisy), motion), 1.0).floor(LIMIT) > 5.0 * clean

@@ -1,0 +1,197 @@
+"""Explanations that alter the equations of the model, which no input of the pair can say.
+
+Sources: docs/how_to/check_your_model.md, "Explanations".
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any
+
+from validation.check.explanations.cause import Cause, Choice, Kind, Variant
+from validation.check.problem import Problem
+
+
+def _altered(label: float | str, words: str, **changes: Any) -> Choice:
+    """A fixed value that alters the equations."""
+    return Choice(label, words, lambda variant: variant.with_physics(**changes))
+
+
+def _has_friction(variant: Variant) -> bool:
+    return variant.pair.friction.law != "none"
+
+
+def _friction_sign(problem: Problem, variant: Variant) -> list[Choice]:
+    """Signs of the friction of both gears together, and of single equations."""
+    if not _has_friction(variant):
+        return []
+    friction = variant.physics.friction
+    choices = [_altered("reversed", "friction with the wrong sign everywhere", friction=-friction)]
+    if variant.pair.shafts is not None:
+        return choices
+    return [
+        *choices,
+        _altered(
+            "moments reversed",
+            "friction moments with the wrong sign, forces with the right sign",
+            moment_pinion=-1.0,
+            moment_gear=-1.0,
+        ),
+        _altered(
+            "forces reversed",
+            "friction forces on the translations with the wrong sign, moments with the right sign",
+            force_pinion=-1.0,
+            force_gear=-1.0,
+        ),
+        _altered(
+            "moment of the pinion",
+            "the friction moment of the pinion with the wrong sign",
+            moment_pinion=-1.0,
+        ),
+        _altered(
+            "moment of the gear", "the friction moment of the gear with the wrong sign", moment_gear=-1.0
+        ),
+        _altered(
+            "force on the pinion", "the friction force on the pinion with the wrong sign", force_pinion=-1.0
+        ),
+        _altered("force on the gear", "the friction force on the gear with the wrong sign", force_gear=-1.0),
+    ]
+
+
+def _friction_part(problem: Problem, variant: Variant) -> list[Choice]:
+    """Moments or forces of friction left out."""
+    if not _has_friction(variant) or variant.pair.shafts is not None:
+        return []
+    return [
+        _altered("no moments", "the moments of friction forgotten", moment_pinion=0.0, moment_gear=0.0),
+        _altered(
+            "no forces", "friction forces on the translations forgotten", force_pinion=0.0, force_gear=0.0
+        ),
+    ]
+
+
+def _mesh_force_sign(problem: Problem, variant: Variant) -> list[Choice]:
+    if variant.pair.shafts is not None:
+        return []
+    words = "the mesh force on the translation of the gear with the wrong sign"
+    return [_altered(-1.0, words, mesh_force_gear=-1.0)]
+
+
+def _dampers(problem: Problem, variant: Variant) -> list[Choice]:
+    if variant.pair.mesh.damping_ratio == 0.0:
+        return []
+    return [
+        _altered("constant", "a constant damper of the mesh", damper="constant"),
+        _altered("proportional", "a damper of the mesh proportional to its stiffness", damper="proportional"),
+        _altered(
+            "root of the whole mesh",
+            "one damper by the root of the stiffness of the whole mesh",
+            damper="of the whole mesh",
+        ),
+    ]
+
+
+def _pulling(problem: Problem, variant: Variant) -> list[Choice]:
+    if variant.physics.pulling:
+        return []
+    return [_altered("linear", "a linear mesh, in which teeth may pull", pulling=True)]
+
+
+def _over_cycle(problem: Problem, variant: Variant) -> list[Choice]:
+    """Other stiffness over the mesh cycle, with prescribed contact."""
+    texts = {
+        "reversed": "the stiffness over the mesh cycle reversed in time",
+        "constant": "a constant mesh stiffness: no parametric excitation",
+        "single pair": "a single tooth pair in contact all the time",
+        "double pair": "two tooth pairs in contact all the time",
+        "shared evenly": "all tooth pairs in contact with the same share of the load",
+    }
+    if variant.physics.stiffness or variant.pair.mesh.stiffness.whole_mesh:
+        return []
+
+    def change(name: str) -> Callable[[Variant], Variant]:
+        return lambda variant: variant.with_inputs(
+            {"mesh.contact": "prescribed", "mesh.relief": "ignored"}
+        ).with_physics(stiffness=name)
+
+    return [Choice(name, words, change(name)) for name, words in texts.items()]
+
+
+def _radius(problem: Problem, variant: Variant) -> list[Choice]:
+    if variant.pair.shafts is not None:
+        return []
+    angle = variant.pair.geometry.operating_pressure_angle
+    words = "pitch radii in place of base radii as lever arms"
+    return [_altered("pitch radius", words, radius=1.0 / math.cos(angle))]
+
+
+def _bearings(problem: Problem, variant: Variant) -> list[Choice]:
+    if variant.pair.shafts is not None:
+        return []
+    return [
+        _altered("rigid", "rigid bearings: gears that only turn", bearings="rigid"),
+        _altered(
+            "torsional", "a torsional model, without translations and bearing forces", bearings="left out"
+        ),
+    ]
+
+
+def _shafts(problem: Problem, variant: Variant) -> list[Choice]:
+    """The springs of the file in place of its shafts."""
+    if variant.pair.shafts is None:
+        return []
+    words = "the springs of [bearings] in place of the shafts"
+
+    def on_springs(variant: Variant) -> Variant:
+        ranges = {path: one for path, one in variant.pair.uncertainty if not path.startswith("shafts")}
+        return variant.with_inputs({"shafts": None, "uncertainty": ranges})
+
+    return [Choice("springs", words, on_springs)]
+
+
+def _causes() -> Iterator[Cause]:
+    def altered(
+        name: str, meaning: str, span: str, choices: Callable[[Problem, Variant], Sequence[Choice]]
+    ) -> Cause:
+        return Cause(name, Kind.PHYSICS, meaning, span, choices)
+
+    yield altered(
+        "friction sign", "friction with the wrong sign", "all, moments, forces, one gear", _friction_sign
+    )
+    yield altered(
+        "part of friction", "moments or forces of friction forgotten", "moments, forces", _friction_part
+    )
+    yield Cause(
+        name="friction coefficient",
+        kind=Kind.PHYSICS,
+        meaning="the friction coefficient",
+        span="factor, about 0.3 to 3.3",
+        grid=(0.3, 0.6, 1.7, 3.3),
+        change=lambda variant, value: variant.with_physics(friction=variant.physics.friction * value),
+        words="the friction coefficient times {value}",
+        applies=lambda problem, variant: _has_friction(variant),
+    )
+    yield altered(
+        "mesh force sign", "the mesh force on the translation of the gear reversed", "-1", _mesh_force_sign
+    )
+    yield altered(
+        "damper law",
+        "another law of the dampers of the teeth",
+        "constant, proportional, root of the whole mesh",
+        _dampers,
+    )
+    yield altered("teeth pull", "a linear mesh in place of unilateral contact", "linear", _pulling)
+    yield altered(
+        "stiffness over the mesh cycle",
+        "another course of the mesh stiffness",
+        "reversed, constant, single pair, double pair, shared evenly",
+        _over_cycle,
+    )
+    yield altered("pitch radius", "pitch radii in place of base radii", "1/cos(alpha)", _radius)
+    yield altered("supports", "rigid bearings, or a torsional model", "rigid, torsional", _bearings)
+    yield altered("shafts left out", "springs in place of shafts", "springs", _shafts)
+
+
+#: Causes that alter the equations of the model.
+OF_MODEL = tuple(_causes())

@@ -1,0 +1,322 @@
+"""Explanations that read the curves of the other model in another way.
+
+Sources: docs/how_to/check_your_model.md, "Explanations".
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+
+from validation.check.explanations.cause import Cause, Choice, Kind, Variant
+from validation.check.explanations.reading import Reading, families, refined_curves_fit
+from validation.check.problem import Problem
+from validation.check.quantities import GEARS, LINES, QUANTITIES, Quantity
+
+#: Factors by which units and definitions are mistaken: words -> factor that the values have too much.
+UNIT_FACTORS = {
+    "thousandths of the unit": 1e3,
+    "millionths of the unit": 1e6,
+    "thousands of the unit": 1e-3,
+    "millions of the unit": 1e-6,
+    "degrees for radians": 180.0 / math.pi,
+    "radians for degrees": math.pi / 180.0,
+    "turns for radians": 1.0 / (2.0 * math.pi),
+    "radians for turns": 2.0 * math.pi,
+    "rpm for rad/s": 30.0 / math.pi,
+    "inches for metres": 1.0 / 0.0254,
+    "kilogram-force for newtons": 1.0 / 9.80665,
+    "pounds for newtons": 1.0 / 4.4482216,
+    "twice the value: diameter for radius, or peak to peak for amplitude": 2.0,
+    "half the value: radius for diameter, or amplitude for peak to peak": 0.5,
+    "rms for peak": 1.0 / math.sqrt(2.0),
+    "peak for rms": math.sqrt(2.0),
+}
+#: A unit is tried where it brings the sizes of both motions nearer to each other by this factor.
+_NEARER = 1.2
+#: More channels than this are not swapped pair by pair.
+_MOST_SWAPPED = 12
+#: Time constant of a low-pass filter: mesh cycles over 2 pi. Delay: mesh cycles.
+_TIME_CONSTANT = (0.125, 0.25, 0.5, 1.0, 2.0)
+_DELAY = (-0.15, -0.05, 0.05, 0.15)
+
+
+def _reading(label: float | str, words: str, change: Callable[[Reading], Reading]) -> Choice:
+    """A fixed value that changes the reading."""
+    return Choice(label, words, lambda variant: variant.with_reading(change(variant.reading)))
+
+
+def _groups(problem: Problem) -> dict[str, tuple[str, ...]]:
+    """Families of channels, then each channel alone: words -> names."""
+    channels = problem.curves.channels
+    return families(channels) | {channel.name: (channel.name,) for channel in channels}
+
+
+def _signs(problem: Problem, variant: Variant) -> list[Choice]:
+    def turned(names: Sequence[str]) -> Callable[[Reading], Reading]:
+        return lambda reading: reading.with_factors(dict.fromkeys(names, -1.0))
+
+    return [
+        _reading(words, f"the sign of {words} reversed", turned(names))
+        for words, names in _groups(problem).items()
+    ]
+
+
+def _units(problem: Problem, variant: Variant) -> list[Choice]:
+    """Unit factors of each group that bring the sizes of the motions nearer to each other."""
+    rows = problem.misfit.channels
+    before = dict(variant.reading.factors)
+    ratios = {}
+    for row in rows:
+        theirs = math.hypot(row.channel.orders.size, row.channel.orders.mean if row.compares_mean else 0.0)
+        ours = math.hypot(row.ours.size, row.ours.mean if row.compares_mean else 0.0)
+        name = row.channel.channel.name
+        ratios[name] = theirs / abs(before.get(name, 1.0)) / ours if theirs > 0.0 and ours > 0.0 else 1.0
+
+    def times(names: Sequence[str], factor: float) -> Callable[[Reading], Reading]:
+        return lambda reading: reading.with_factors(dict.fromkeys(names, factor))
+
+    choices = []
+    for words, names in _groups(problem).items():
+        distance = max(abs(math.log(ratios[name])) for name in names)
+        for unit, factor in UNIT_FACTORS.items():
+            nearer = max(abs(math.log(ratios[name] / factor)) for name in names)
+            if nearer < distance - math.log(_NEARER):
+                label = f"{words}: {factor:.6g}"
+                text = f"{words} {factor:.4g} times too large ({unit})"
+                choices.append(_reading(label, text, times(names, factor)))
+    return choices
+
+
+def _radii(problem: Problem, variant: Variant) -> list[Choice]:
+    """Lengths for angles, angles of the other gear, or the transmission error as an angle."""
+    g = problem.pair.geometry
+    ratio = g.base_radius_gear / g.base_radius_pinion
+    radii = {"pinion": g.base_radius_pinion, "gear": g.base_radius_gear}
+    choices = []
+    for channel in problem.curves.channels:
+        factors: dict[str, float] = {}
+        name = channel.quantity
+        if name.startswith("dte"):
+            factors = {f"an angle of the {gear}": 1.0 / radius for gear, radius in radii.items()}
+        elif name.startswith("theta"):
+            own = "pinion" if "_p" in name else "gear"
+            factors = {"a length on the base circle": radii[own]}
+            if ratio != 1.0:
+                factors |= {
+                    "the angle times the ratio of the teeth": ratio,
+                    "the angle over the ratio of the teeth": 1.0 / ratio,
+                }
+        for words, factor in factors.items():
+
+            def change(reading: Reading, name: str = channel.name, factor: float = factor) -> Reading:
+                return reading.with_factors({name: factor})
+
+            choices.append(_reading(f"{channel.name}: {words}", f"{channel.name} as {words}", change))
+    return choices
+
+
+def _swapped(problem: Problem, variant: Variant) -> list[Choice]:
+    """Two channels of the same unit swapped; all of the pinion with all of the gear."""
+    channels = problem.curves.channels
+    quantities = {channel.name: channel.quantity for channel in channels}
+    choices = []
+
+    def becoming(changes: dict[str, str]) -> Callable[[Reading], Reading]:
+        return lambda reading: reading.with_quantities(changes)
+
+    by_quantity = {channel.quantity: channel.name for channel in channels}
+    for words, exchange in (("pinion and gear", _other_gear), ("both directions", _other_line)):
+        changes = {
+            name: exchange(quantity)
+            for name, quantity in quantities.items()
+            if exchange(quantity) != quantity and exchange(quantity) in by_quantity
+        }
+        if len(changes) > 2:
+            text = f"the channels of {words} swapped"
+            choices.append(_reading(f"all of {words}", text, becoming(changes)))
+    if len(channels) > _MOST_SWAPPED:
+        return choices
+    for one, other in itertools.combinations(channels, 2):
+        same = one.kind.unit == other.kind.unit and one.kind.of_tooth_pair == other.kind.of_tooth_pair
+        if same and one.quantity != other.quantity:
+            changes = {one.name: other.quantity, other.name: one.quantity}
+            text = f"the channels {one.name} and {other.name} swapped"
+            choices.append(_reading(f"{one.name} and {other.name}", text, becoming(changes)))
+    return choices
+
+
+def _other_gear(quantity: str) -> str:
+    """Name of the same quantity of the other gear."""
+    stem, _, ending = quantity.partition("_dot") if "_dot" in quantity else quantity.partition("_ddot")
+    middle = quantity[len(stem) : len(quantity) - len(ending)]
+    (one, _), (other, _) = GEARS
+    exchanged = {f"_{one}": f"_{other}", f"_{other}": f"_{one}"}.get(stem[-2:])
+    return quantity if exchanged is None else stem[:-2] + exchanged + middle + ending
+
+
+def _other_line(quantity: str) -> str:
+    """Name of the same quantity in the other direction."""
+    (one, _), (other, _) = LINES
+    if quantity.startswith("bearing_force_"):
+        return "bearing_force_" + _other_line(quantity.removeprefix("bearing_force_"))
+    exchanged = {f"{one}_": f"{other}_", f"{other}_": f"{one}_"}.get(quantity[:2])
+    return quantity if exchanged is None else exchanged + quantity[2:]
+
+
+def _other_quantities(problem: Problem, variant: Variant) -> list[Choice]:
+    """A channel that holds another quantity than its name says."""
+    choices = []
+    quantities = dict(variant.reading.quantities)
+    for channel in problem.curves.channels:
+        kind = QUANTITIES[quantities.get(channel.name, channel.quantity)]
+        for words, quantity, factor in _mistaken(problem, kind):
+
+            def change(
+                reading: Reading, name: str = channel.name, quantity: str = quantity, factor: float = factor
+            ) -> Reading:
+                return reading.with_quantities({name: quantity}).with_factors({name: factor})
+
+            label = f"{channel.name}: {words}"
+            choices.append(_reading(label, f"{words} in the channel {channel.name}", change))
+    return choices
+
+
+def _mistaken(problem: Problem, kind: Quantity) -> Iterator[tuple[str, str, float]]:
+    """Words, quantity, and factor from that quantity to the values of the channel."""
+    name = kind.name
+    stem = name.removesuffix("_ddot").removesuffix("_dot")
+    others = [stem, f"{stem}_dot", f"{stem}_ddot"]
+    nouns = ("the motion itself", "the rate", "the acceleration")
+    for words, other in zip(nouns, others, strict=True):
+        if other != name and f"{stem}_dot" in QUANTITIES and other in QUANTITIES:
+            yield words, other, 1.0
+    if name.startswith("bearing_force_"):
+        motion = name.removeprefix("bearing_force_")
+        yield "the displacement", motion, 1.0
+        if problem.pair.shafts is None:
+            bearing = getattr(problem.pair.bearings, "pinion" if motion.endswith("_p") else "gear")
+            stiffness = bearing.loa_stiffness if motion.startswith("x") else bearing.oloa_stiffness
+            yield "stiffness times displacement, without the damper", motion, -stiffness
+    elif stem[:2] in ("x_", "y_") and not kind.derivative:
+        yield "the bearing force", f"bearing_force_{stem}", 1.0
+    if name == "mesh_force":
+        yield "the friction force", "friction", 1.0
+    if name.startswith("mesh_torque"):
+        yield "the mesh force", "mesh_force", 1.0
+
+
+def _reversed(problem: Problem, variant: Variant) -> list[Choice]:
+    turned = not variant.reading.reversed
+    return [_reading("reversed", "time that runs backwards", lambda r: replace(r, reversed=turned))]
+
+
+def _not_settled(problem: Problem, variant: Variant) -> list[Choice]:
+    if variant.reading.decaying or problem.curves.role != "model":
+        return []
+    words = "a motion that has not settled: free vibrations still decay"
+    return [_reading("not settled", words, lambda reading: replace(reading, decaying=True))]
+
+
+def _step(problem: Problem, variant: Variant) -> list[Choice]:
+    if problem.refined is None or not refined_curves_fit(problem.curves, problem.refined):
+        return []
+    words = "a step of integration that is too long: half the step gives other curves"
+    return [_reading("half the step", words, lambda reading: replace(reading, refined=True))]
+
+
+def _phase(problem: Problem, variant: Variant) -> list[Choice]:
+    if problem.given_shift is None:
+        return []
+    words = "another phase than the stated one"
+    return [_reading("searched", words, lambda reading: replace(reading, free_shift=True))]
+
+
+def _time_axis(problem: Problem, variant: Variant) -> list[Choice]:
+    """The time axis alone is wrong: the motion is at the speed of the pair."""
+    factor = problem.frequency.factor
+    if problem.curves.abscissa != "time" or (not problem.frequency.cause and abs(factor - 1.0) < 5e-3):
+        return []
+    words = f"a time axis {factor:.4g} times too fast, with the motion at the speed of the pair"
+    return [_reading(1.0 / factor, words, lambda reading: reading)]
+
+
+def causes_of_channels(problem: Problem) -> list[Cause]:
+    """Return the free causes of each channel: its delay against all other channels."""
+    channels = problem.curves.channels
+
+    def late(name: str) -> Callable[[Variant, float], Variant]:
+        return lambda variant, value: variant.with_reading(variant.reading.with_delay(name, value))
+
+    return [
+        replace(
+            DELAY,
+            words=f"the channel {channel.name} {{value}} mesh cycles late against the others",
+            change=late(channel.name),
+            applies=lambda problem, variant: True,
+            part=channel.name,
+        )
+        for channel in channels
+        if len(channels) > 1
+    ]
+
+
+#: A delay of one channel; ``causes_of_channels`` makes one cause for each channel of it.
+DELAY = Cause(
+    name="delay of a channel",
+    kind=Kind.READING,
+    meaning="one channel late against the others, as by a filter",
+    span="-0.2 to 0.2 mesh cycles",
+    grid=_DELAY,
+    neutral=0.0,
+    applies=lambda problem, variant: False,
+)
+
+
+def _causes() -> Iterator[Cause]:
+    def read(
+        name: str, meaning: str, span: str, choices: Callable[[Problem, Variant], Sequence[Choice]]
+    ) -> Cause:
+        return Cause(name, Kind.READING, meaning, span, choices)
+
+    yield read(
+        "time axis",
+        "times in another unit, or at another speed than the motion",
+        "ratio of the frequencies",
+        _time_axis,
+    )
+    yield read("sign of a channel", "a channel, or a family of channels, with the wrong sign", "-1", _signs)
+    units = ", ".join(f"{factor:.4g}" for factor in UNIT_FACTORS.values())
+    yield read("unit of a channel", "a channel, or a family of channels, in another unit", units, _units)
+    yield read(
+        "radius of a channel", "an angle for a length, or of the other gear", "base radii, ratio", _radii
+    )
+    yield read("channels swapped", "two channels swapped", "pairs of channels", _swapped)
+    yield read(
+        "another quantity",
+        "a channel that holds another quantity",
+        "displacement, rate, force",
+        _other_quantities,
+    )
+    yield read("time reversed", "time that runs backwards", "reversed", _reversed)
+    yield read("wrong phase", "another phase than the stated one", "searched", _phase)
+    yield read("not settled", "free vibrations that still decay", "not settled", _not_settled)
+    yield read("step too long", "a step of integration that is too long", "half the step", _step)
+    yield Cause(
+        name="low-pass filter",
+        kind=Kind.READING,
+        meaning="all channels through a low-pass filter of first order",
+        span="cutoff at 0.5 to 8 mesh orders and above",
+        grid=_TIME_CONSTANT,
+        neutral=0.0,
+        change=lambda variant, value: variant.with_reading(replace(variant.reading, time_constant=value)),
+        words="a low-pass filter of first order at {value} mesh orders",
+        shown=lambda value: 1.0 / max(value, 1e-300),
+    )
+    yield DELAY
+
+
+#: Causes that change the reading of the curves.
+OF_READING = tuple(_causes())

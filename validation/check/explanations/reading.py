@@ -1,0 +1,200 @@
+"""Other readings of the curves of another model: signs, units, channels, filters, times.
+
+A reading changes the complex orders of the channels, or which quantity a channel holds. It costs no motion.
+
+Sources: docs/how_to/check_your_model.md, "Explanations".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.errors import NumericalError
+from lumped.model.periodic_system import LTVSystem, supports_of
+from lumped.schema.pair import GearPair
+from lumped.typing import FloatArray
+from validation.check.curve_orders import ChannelOrders, orders_of_channel
+from validation.check.curves import Channel, Curves
+from validation.check.problem import Problem
+from validation.signals.complex_orders import ComplexOrders
+
+#: Channel -> factor, delay or quantity, as sorted pairs, so that a reading can be a key.
+ByChannel = tuple[tuple[str, float], ...]
+
+
+@dataclass(frozen=True)
+class Reading:
+    """How the curves are read. The defaults read them as they are.
+
+    Attributes
+    ----------
+    factors : channel -> factor that its values have too much
+    quantities : channel -> quantity that it holds in place of its own
+    delays : channel -> delay against the other channels [mesh cycles]
+    reversed : whether the time runs backwards
+    time_constant : of a low-pass filter of first order of all channels, 1 over the mesh order of its cutoff
+    free_shift : whether the phase that the user states is ignored
+    decaying : whether free vibrations that decay are taken out of the curves
+    refined : whether the curves with half the step are taken
+    """
+
+    factors: ByChannel = ()
+    quantities: tuple[tuple[str, str], ...] = ()
+    delays: ByChannel = ()
+    reversed: bool = False
+    time_constant: float = 0.0
+    free_shift: bool = False
+    decaying: bool = False
+    refined: bool = False
+
+    def with_factors(self, factors: Mapping[str, float]) -> Reading:
+        """Return the reading with further factors, by channel."""
+        before = dict(self.factors)
+        product = before | {name: before.get(name, 1.0) * factor for name, factor in factors.items()}
+        return replace(self, factors=tuple(sorted(product.items())))
+
+    def with_quantities(self, quantities: Mapping[str, str]) -> Reading:
+        """Return the reading with other quantities, by channel."""
+        return replace(self, quantities=tuple(sorted((dict(self.quantities) | dict(quantities)).items())))
+
+    def with_delay(self, channel: str, delay: float) -> Reading:
+        """Return the reading with the delay of a channel."""
+        return replace(self, delays=tuple(sorted((dict(self.delays) | {channel: delay}).items())))
+
+
+#: The curves as they are.
+AS_THEY_ARE = Reading()
+
+
+def read(problem: Problem, reading: Reading) -> tuple[ChannelOrders, ...]:
+    """Return the channels of a problem by their orders, in a reading."""
+    factors = dict(reading.factors)
+    quantities = dict(reading.quantities)
+    delays = dict(reading.delays)
+    result = []
+    for one in _channels(problem, reading):
+        channel = one.channel
+        orders = _scaled(one.orders, 1.0 / factors.get(channel.name, 1.0))
+        if reading.time_constant > 0.0:
+            orders = _times(orders, 1.0 + 1j * orders.orders * reading.time_constant)
+        if channel.name in delays:
+            orders = _times(orders, np.exp(2j * np.pi * orders.orders * delays[channel.name]))
+        if reading.reversed:
+            orders = replace(orders, values=orders.values.conj())
+        channel = replace(channel, quantity=quantities.get(channel.name, channel.quantity))
+        result.append(ChannelOrders(channel, orders))
+    return tuple(result)
+
+
+def _channels(problem: Problem, reading: Reading) -> tuple[ChannelOrders, ...]:
+    """The channels of the settled samples, of refined curves, or without free vibrations."""
+    if reading.refined and problem.refined is not None:
+        finer = Problem(problem.pair, problem.refined, problem.motion, problem.frequency, problem.given_shift)
+        return finer.theirs
+    if reading.decaying:
+        return without_free_vibrations(problem)
+    return problem.theirs
+
+
+def without_free_vibrations(problem: Problem) -> tuple[ChannelOrders, ...]:
+    """Return the channels without the free vibrations of the pair, which decay.
+
+    A least-squares fit has the orders and, for each mode of the mean system, a decaying cosine and sine.
+    """
+    used = np.ones(problem.cycles.size, dtype=bool)
+    waves = _free_vibrations(problem.pair, problem.cycles)
+    result = []
+    for one in problem.theirs:
+        if one.channel.tooth_pair is not None:
+            result.append(one)
+            continue
+        values = one.channel.values[used]
+        angle = 2.0 * np.pi * np.multiply.outer(problem.cycles, one.orders.orders)
+        steady = np.hstack([np.ones((values.size, 1)), np.cos(angle), -np.sin(angle)])
+        fit = np.linalg.lstsq(np.hstack([steady, waves]), values, rcond=1e-10)[0]
+        settled = replace(one.channel, values=values - waves @ fit[steady.shape[1] :])
+        orders = orders_of_channel(settled, problem.cycles, one.orders.orders, problem.motion, 0.0)
+        result.append(ChannelOrders(settled, orders))
+    return tuple(result)
+
+
+def _free_vibrations(pair: GearPair, cycles: FloatArray) -> FloatArray:
+    """Decaying cosines and sines (k, 2 modes) of the mean system over the mesh cycles of the samples."""
+    system = LTVSystem.of(pair.healthy, "elastic", supports=supports_of(pair, None))
+    times = (np.arange(64) + 0.5) / 64 * system.period
+    mean = system.matrices(times).mean(axis=0)
+    rates = np.asarray(np.linalg.eigvals(mean) * system.period, dtype=np.complex128)
+    rates = rates[(rates.imag > 0.0) & (rates.real < 0.0)]
+    if not rates.size:
+        raise NumericalError("The pair has no free vibration that decays.")
+    waves = np.exp(np.multiply.outer(cycles - cycles[0], rates))
+    return np.asarray(np.hstack([waves.real, waves.imag]), dtype=np.float64)
+
+
+def _scaled(orders: ComplexOrders, factor: float) -> ComplexOrders:
+    """Orders times a real factor, with the mean."""
+    if factor == 1.0:
+        return orders
+    return replace(
+        orders,
+        values=orders.values * factor,
+        mean=orders.mean * factor,
+        covariance=orders.covariance * factor**2,
+    )
+
+
+def _times(orders: ComplexOrders, factors: NDArray[np.complexfloating[Any, Any]]) -> ComplexOrders:
+    """Orders times complex factors. The mean and the covariance stay."""
+    return replace(orders, values=orders.values * factors)
+
+
+def families(channels: tuple[Channel, ...]) -> dict[str, tuple[str, ...]]:
+    """Return groups of at least two channels that share a convention: words -> names of the channels."""
+    members: dict[str, list[str]] = {}
+    for channel in channels:
+        for words in _families_of(channel):
+            members.setdefault(words, []).append(channel.name)
+    groups = {words: tuple(names) for words, names in members.items() if len(names) > 1}
+    unique: dict[tuple[str, ...], str] = {}
+    for words, names in groups.items():
+        unique.setdefault(names, words)
+    return {words: names for names, words in unique.items()}
+
+
+def _families_of(channel: Channel) -> list[str]:
+    """Words for the groups to which a channel belongs."""
+    name = channel.quantity
+    stem = name.removesuffix("_ddot").removesuffix("_dot")
+    words = ["all channels"]
+    if name.startswith("bearing_force"):
+        words.append("all bearing forces")
+    elif stem.startswith("theta"):
+        words.append("all rotations")
+    elif stem[:2] in ("x_", "y_"):
+        words.append("all displacements of the gears")
+    elif channel.kind.unit == "N":
+        words.append("all tooth forces")
+    if name.endswith("_ddot"):
+        words.append("all accelerations")
+    elif name.endswith("_dot"):
+        words.append("all rates")
+    if stem[:2] in ("x_", "y_") or name.startswith("bearing_force"):
+        line = "along" if "x_" in name else "across"
+        words.append(f"everything {line} the line of action")
+    if stem.startswith("y_") or name.startswith(("bearing_force_y", "friction")):
+        words.append("everything across the line of action, with friction")
+    if stem.endswith("_p") and not name.startswith("mesh"):
+        words.append("everything of the pinion")
+    if stem.endswith("_g") and not name.startswith("mesh"):
+        words.append("everything of the gear")
+    return words
+
+
+def refined_curves_fit(curves: Curves, refined: Curves) -> bool:
+    """Return whether refined curves have the channels of the curves."""
+    return [channel.name for channel in curves.channels] == [channel.name for channel in refined.channels]

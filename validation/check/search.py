@@ -1,0 +1,521 @@
+"""The search for explanations: trials of changed models, free parameters by Gauss-Newton, a beam of paths.
+
+A path is a set of steps, each a cause with its value. All free parameters of a path are fitted together. A
+trial that costs a motion is tried only once.
+
+- Screening: a fixed value is one motion. A free parameter is some motions on a coarse grid; between them the
+  residuals are taken as straight lines. The part of the residuals that the free parameters of the earlier
+  steps can take up is left out.
+- Refinement: the best of both kinds are fitted with all free parameters of their path.
+
+Sources: docs/how_to/check_your_model.md, "Explanations".
+"""
+
+from __future__ import annotations
+
+import itertools
+import time
+import warnings
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+
+from lumped.errors import SpurcheckError
+from lumped.model.revolution_motion import Origin
+from lumped.schema.pair import GearPair
+from lumped.typing import FloatArray
+from validation.check.curve_orders import ChannelOrders
+from validation.check.explanations.cause import Cause, Choice, Kind, Variant
+from validation.check.explanations.of_reading import causes_of_channels
+from validation.check.explanations.physics import Physics, motion_of
+from validation.check.explanations.reading import Reading, read
+from validation.check.explanations.registry import EXPLANATIONS
+from validation.check.misfit import Misfit
+from validation.check.motion_curves import MotionCurves
+from validation.check.problem import Problem
+from validation.signals.complex_orders import complex_orders
+
+#: A free parameter counts as this much worse than a fixed value with the same misfit.
+FREE_IS_WORSE = 1.15
+#: Step of the derivatives by a free parameter, on the scale of the search.
+_DIFFERENCE = 0.01
+#: Most Gauss-Newton steps, and the share of the misfit that a step must gain.
+_STEPS = 6
+_GAIN = 0.02
+#: Candidates of each kind that are fitted with all free parameters of their path.
+_REFINED = 6
+#: A screened candidate must promise to lower the misfit to this share.
+_PROMISES = 0.97
+#: Causes of another mesh frequency. One of them is the first step where the frequency is another one.
+OF_FREQUENCY = ("time axis", "speed of the curves")
+#: Intervals of the grid of a free parameter that are tried.
+_INTERVALS = 2
+#: Free parameters that are searched by Brent's method where Gauss-Newton steps leave a misfit above this,
+#: and trials of each search.
+_SEARCHED = 2
+_STALLED = 0.02
+_TRIALS = 14
+#: Free parameters nearer to neutral than this change nothing that is worth a sentence.
+_LEAST_CHANGE = 1e-3
+#: Readings that can hide every other cause.
+HIDING = ("sign of a channel", "channels swapped", "time reversed")
+
+
+class Step(NamedTuple):
+    """A cause with its value.
+
+    Attributes
+    ----------
+    cause : the cause
+    choice : the fixed value; None: the value is free
+    coordinate : of the free parameter on the scale of the search
+    """
+
+    cause: Cause
+    choice: Choice | None
+    coordinate: float = 0.0
+
+    @property
+    def key(self) -> tuple[str, str]:
+        """Name of the cause, and which of its values or parts; the number of a free value is left out."""
+        return self.cause.name, self.cause.part if self.choice is None else str(self.choice.label)
+
+    @property
+    def label(self) -> float | str:
+        """The value that a user reads."""
+        if self.choice is not None:
+            return self.choice.label
+        return self.cause.shown(self.cause.value(self.coordinate))
+
+    @property
+    def changes(self) -> bool:
+        """Whether the value changes anything that is worth a sentence."""
+        return self.choice is not None or abs(self.coordinate) > _LEAST_CHANGE
+
+    @property
+    def sentence(self) -> str:
+        """The explanation in words."""
+        if self.choice is not None:
+            return f"Compatible with {self.choice.words}"
+        return f"Compatible with {self.cause.words.format(value=f'{float(self.label):.4g}')}"
+
+    def of(self, variant: Variant) -> Variant:
+        """Return the variant with this step."""
+        if self.choice is not None:
+            return self.choice.variant(variant)
+        return self.cause.change(variant, self.cause.value(self.coordinate))
+
+
+class Trial(NamedTuple):
+    """A changed model beside the curves.
+
+    Attributes
+    ----------
+    motion : its motion
+    misfit : its misfit
+    residual : real numbers whose root sum square is the value of the misfit
+    """
+
+    motion: MotionCurves
+    misfit: Misfit
+    residual: FloatArray
+
+    @property
+    def value(self) -> float:
+        """The misfit."""
+        return float(np.linalg.norm(self.residual))
+
+
+@dataclass(frozen=True, eq=False)
+class Path:
+    """Steps from our model, with the trial of all of them together."""
+
+    steps: tuple[Step, ...]
+    trial: Trial
+
+    @property
+    def keys(self) -> frozenset[tuple[str, str]]:
+        """Keys of the steps."""
+        return frozenset(step.key for step in self.steps)
+
+    @property
+    def free(self) -> int:
+        """Number of free parameters."""
+        return sum(step.choice is None for step in self.steps)
+
+    def score(self, floor: float) -> float:
+        """Return the misfit, not below ``floor``, with the price of the free parameters."""
+        return float(np.hypot(self.trial.value, floor)) * FREE_IS_WORSE**self.free
+
+
+#: Motions of changed models; None: the model has no motion.
+Motions = dict[tuple[GearPair, Physics], MotionCurves | None]
+
+
+class BudgetSpentError(Exception):
+    """The processor time of the search is spent."""
+
+
+@dataclass(eq=False)
+class Search:
+    """Trials of changed models within a budget.
+
+    Attributes
+    ----------
+    problem : the curves and our motion
+    budget : processor time [s]
+    causes : causes that are tried
+    motions : motions of changed models; searches of several curves of one pair can share them
+    runs : number of motions that were computed
+    archive : keys of the steps -> best path with these steps
+    """
+
+    problem: Problem
+    budget: float
+    causes: tuple[Cause, ...] = ()
+    motions: Motions = field(default_factory=dict)
+    runs: int = 0
+    archive: dict[frozenset[tuple[str, str]], Path] = field(default_factory=dict)
+    _readings: dict[Reading, tuple[ChannelOrders, ...] | None] = field(default_factory=dict)
+    _expanded: dict[frozenset[tuple[str, str]], list[Path]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        """Set the end of the budget, and the motion that is known."""
+        self.causes = (*EXPLANATIONS.values(), *causes_of_channels(self.problem))
+        self._end = time.process_time() + self.budget
+        start = Variant(self.problem.pair)
+        self.motions[start.pair, start.physics] = self.problem.motion
+
+    def start(self) -> Path:
+        """Return the path without steps."""
+        trial = self.trial(())
+        assert trial is not None  # its motion is that of the problem
+        return Path((), trial)
+
+    def trial(self, steps: Sequence[Step]) -> Trial | None:
+        """Return the trial of steps; None: the changed model has no motion, or the pair refuses a change.
+
+        Raises
+        ------
+        BudgetSpentError : a motion is needed, and the budget is spent
+        """
+        try:
+            variant = Variant(self.problem.pair)
+            for step in steps:
+                variant = step.of(variant)
+        except SpurcheckError:
+            return None
+        theirs = self._theirs(variant.reading)
+        motion = self._motion(variant.pair, variant.physics)
+        if theirs is None or motion is None:
+            return None
+        try:
+            misfit = self.problem.misfit_with(motion, theirs, free_shift=variant.reading.free_shift)
+        except SpurcheckError:
+            return None
+        residual = residual_of(misfit)
+        return Trial(motion, misfit, residual) if np.isfinite(residual).all() else None
+
+    def _motion(self, pair: GearPair, physics: Physics) -> MotionCurves | None:
+        """Motion of a variant, computed once."""
+        key = pair, physics
+        if key not in self.motions:
+            if time.process_time() > self._end:
+                raise BudgetSpentError
+            self.runs += 1
+            try:
+                with warnings.catch_warnings():
+                    warnings.simplefilter("ignore")
+                    again = self.problem.curves.recurrence
+                    self.motions[key] = motion_of(pair, physics, again, settles=self._settles)
+            except SpurcheckError:
+                self.motions[key] = None
+        return self.motions[key]
+
+    def _theirs(self, reading: Reading) -> tuple[ChannelOrders, ...] | None:
+        """Their channels in a reading, computed once."""
+        if reading not in self._readings:
+            try:
+                self._readings[reading] = read(self.problem, reading)
+            except SpurcheckError:
+                self._readings[reading] = None
+        return self._readings[reading]
+
+    def floor(self, limit: float) -> float:
+        """Return the misfit below which a difference says nothing.
+
+        This is the error of our motion, with the noise of the curves and a fiftieth of the limit.
+        """
+        error = self.problem.motion.motion.attrs.get("error_estimate", 0.0)
+        return float(np.sqrt(noise_of(self.problem) ** 2 + error**2 + (limit / 50.0) ** 2))
+
+    def expand(self, path: Path) -> list[Path]:
+        """Return the paths with one step more, each fitted; the misfit is smallest first.
+
+        Where the budget ends the paths that were fitted are returned; ``spent`` then says so.
+        """
+        if path.keys not in self._expanded:
+            self._expanded[path.keys] = []
+            self._expanded[path.keys] = self._with_one_step_more(path)
+        return self._expanded[path.keys]
+
+    @property
+    def _settles(self) -> bool:
+        """Whether motions are looked for by runs that settle: only where that of the pair was found so."""
+        return bool(self.problem.motion.motion.attrs.get("origin") == Origin.SETTLED.value)
+
+    @property
+    def spent(self) -> bool:
+        """Whether the budget is spent."""
+        return time.process_time() > self._end
+
+    def _with_one_step_more(self, path: Path) -> list[Path]:
+        screened = self._screened(path)
+        promising = [one for rest, one in screened if rest < _PROMISES * path.trial.value]
+        fixed = [one for one in promising if one.steps[-1].choice is not None]
+        free = [one for one in promising if one.steps[-1].choice is None]
+        result = [self.fitted(one) for one in (*fixed[:_REFINED], *free[:_REFINED])]
+        result += fixed[_REFINED:]
+        result.sort(key=lambda one: one.trial.value)
+        if result and result[0].trial.value > _STALLED:
+            stalled = [one for one in result if one.steps[-1].choice is None][:_SEARCHED]
+            result += [self.fitted(self._searched(one)) for one in stalled]
+        return self._archived([one for one in result if one.steps[-1].changes])
+
+    def with_reading(self, path: Path) -> list[Path]:
+        """Return paths with two steps more: another reading, and any other cause.
+
+        A wrong sign, or two channels that are swapped, can hide every other cause. The motions are those of
+        ``expand``, so that a reading costs little.
+        """
+        screened = []
+        try:
+            for step in list(self._fixed_steps(path)):
+                if step.cause.name in HIDING:
+                    trial = self.trial((*path.steps, step))
+                    if trial is not None:
+                        screened += self._screened(Path((*path.steps, step), trial))
+        except BudgetSpentError:
+            pass
+        screened.sort(key=lambda one: one[0])
+        return self._archived([self.fitted(one) for _, one in screened[:_REFINED]])
+
+    def _screened(self, path: Path) -> list[tuple[float, Path]]:
+        """Paths with one step more, not fitted, and the misfit that each promises; the smallest first."""
+        screened: list[tuple[float, Path]] = []
+        try:
+            taken_up = self._taken_up(path)
+            for step in self._fixed_steps(path):
+                trial = self.trial((*path.steps, step))
+                if trial is not None:
+                    rest = _without(trial.residual, taken_up)
+                    screened.append((rest, Path((*path.steps, step), trial)))
+            screened += self._screened_free(path, taken_up)
+        except BudgetSpentError:
+            pass
+        return sorted(screened, key=lambda one: one[0])
+
+    def _archived(self, paths: list[Path]) -> list[Path]:
+        """The paths, the smallest misfit first, after they are put into the archive."""
+        for one in paths:
+            self._keep(one)
+        return sorted(paths, key=lambda one: one.trial.value)
+
+    def _keep(self, path: Path) -> None:
+        before = self.archive.get(path.keys)
+        if before is None or path.trial.value < before.trial.value:
+            self.archive[path.keys] = path
+
+    def _fixed_steps(self, path: Path) -> Iterator[Step]:
+        """All fixed values that the path does not have; a cause of the pair has one value only."""
+        variant = Variant(self.problem.pair)
+        for step in path.steps:
+            variant = step.of(variant)
+        names = {step.cause.name for step in path.steps if step.cause.kind is not Kind.READING}
+        for cause in self.causes:
+            if cause.free or cause.name in names or self._of_start(cause):
+                continue
+            try:
+                choices = cause.choices(self.problem, variant)
+            except SpurcheckError:
+                continue
+            for choice in choices:
+                step = Step(cause, choice)
+                if step.key not in path.keys:
+                    yield step
+
+    def _of_start(self, cause: Cause) -> bool:
+        """Whether a cause is tried only at the start: another mesh frequency that the curves show."""
+        return cause.name in OF_FREQUENCY and self.problem.curves.abscissa == "time"
+
+    def _screened_free(self, path: Path, taken_up: FloatArray) -> Iterator[tuple[float, Path]]:
+        """Best place of each free parameter between the trials of its grid, by straight residuals."""
+        variant = Variant(self.problem.pair)
+        for step in path.steps:
+            variant = step.of(variant)
+        for cause in self.causes:
+            step = Step(cause, None)
+            if not cause.free or step.key in path.keys or not cause.applies(self.problem, variant):
+                continue
+            places = [(0.0, path.trial)]
+            for value in cause.grid:
+                coordinate = cause.coordinate(value)
+                trial = self.trial((*path.steps, step._replace(coordinate=coordinate)))
+                if trial is not None:
+                    places.append((coordinate, trial))
+            places.sort(key=lambda place: place[0])
+            promised = []
+            for (x0, one), (x1, other) in itertools.pairwise(places):
+                share, rest = _between(one.residual, other.residual, taken_up)
+                promised.append((rest, x0 + share * (x1 - x0)))
+            for rest, coordinate in sorted(promised)[:_INTERVALS]:
+                steps = (*path.steps, step._replace(coordinate=coordinate))
+                trial = self.trial(steps)
+                if trial is not None:
+                    # Straight residuals promise too much where the motion is not straight between trials.
+                    yield float(np.sqrt(rest * trial.value)), Path(steps, trial)
+
+    def _taken_up(self, path: Path) -> FloatArray:
+        """Orthonormal directions (n, p) of the residual that the free parameters of a path can change."""
+        slopes = self._slopes(path)
+        if not slopes.size:
+            return np.zeros((path.trial.residual.size, 0))
+        return np.asarray(np.linalg.qr(slopes)[0], dtype=np.float64)
+
+    def _slopes(self, path: Path) -> FloatArray:
+        """Derivatives (n, p) of the residual by the free parameters."""
+        columns = []
+        for number, step in enumerate(path.steps):
+            if step.choice is None:
+                moved = step._replace(coordinate=step.coordinate + _DIFFERENCE)
+                trial = self.trial((*path.steps[:number], moved, *path.steps[number + 1 :]))
+                if trial is None:
+                    columns.append(np.zeros(path.trial.residual.size))
+                else:
+                    columns.append((trial.residual - path.trial.residual) / _DIFFERENCE)
+        return np.stack(columns, axis=1) if columns else np.zeros((path.trial.residual.size, 0))
+
+    def fitted(self, path: Path) -> Path:
+        """Return a path with all free parameters fitted by Gauss-Newton steps, as far as the budget goes."""
+        try:
+            for _ in range(_STEPS if path.free else 0):
+                better = self._gauss_newton(path)
+                if better is None:
+                    break
+                gain = 1.0 - better.trial.value / path.trial.value
+                path = better
+                if gain < _GAIN:
+                    break
+        except BudgetSpentError:
+            pass
+        return path
+
+    def _searched(self, path: Path) -> Path:
+        """The path with the free parameter of its last step by Brent's method, within a step of the grid."""
+        *before, step = path.steps
+        places = np.sort([0.0, *(step.cause.coordinate(value) for value in step.cause.grid)])
+        reach = float(np.diff(places).min())
+        best = path
+
+        def value(coordinate: float) -> float:
+            nonlocal best
+            steps = (*before, step._replace(coordinate=float(coordinate)))
+            trial = self.trial(steps)
+            if trial is None:
+                return 10.0 * path.trial.value
+            if trial.value < best.trial.value:
+                best = Path(steps, trial)
+            return trial.value
+
+        bounds = step.coordinate - reach, step.coordinate + reach
+        with suppress(BudgetSpentError):
+            minimize_scalar(value, bounds=bounds, method="bounded", options={"maxiter": _TRIALS})
+        return best
+
+    def _gauss_newton(self, path: Path) -> Path | None:
+        """One Gauss-Newton step, shortened where it does not lower the misfit; None: no lower misfit."""
+        slopes = self._slopes(path)
+        solution = np.linalg.lstsq(slopes, path.trial.residual, rcond=1e-6)[0]
+        change = np.asarray(-solution, dtype=np.float64)
+        for share in (1.0, 0.4, 0.1):
+            steps = _moved(path.steps, share * change)
+            trial = self.trial(steps)
+            if trial is not None and trial.value < path.trial.value:
+                return Path(steps, trial)
+        return None
+
+
+def _moved(steps: Sequence[Step], change: FloatArray) -> tuple[Step, ...]:
+    """Steps with changed free parameters, within the reach of each cause."""
+    changes = iter(change)
+    moved = []
+    for step in steps:
+        if step.choice is None:
+            low, high = step.cause.reach
+            coordinate = float(np.clip(step.coordinate + next(changes), low, high))
+            step = step._replace(coordinate=coordinate)
+        moved.append(step)
+    return tuple(moved)
+
+
+def noise_of(problem: Problem) -> float:
+    """Return the misfit that noise alone makes: half the difference between two halves of the curves.
+
+    Orders above those that are compared are no noise, because they repeat with every cycle. Curves of less
+    than two cycles, and of teeth that differ, count as free of noise.
+    """
+    cycles = problem.cycles[problem.settled.used]
+    whole = int(np.ptp(cycles) + 0.01 + cycles[1] - cycles[0])
+    if whole < 2 or (problem.orders % 1.0).any():
+        return 0.0
+    middle = cycles[-1] - whole // 2
+    first = (cycles > middle - whole // 2) & (cycles <= middle)
+    squares = []
+    for row in problem.misfit.channels:
+        if row.channel.channel.tooth_pair is not None:
+            continue
+        values = row.channel.channel.values[problem.settled.used]
+        try:
+            halves = [
+                complex_orders(cycles[one], values[one], problem.orders) for one in (first, cycles > middle)
+            ]
+        except SpurcheckError:
+            return 0.0
+        squares.append((np.linalg.norm(halves[1].values - halves[0].values) / (2.0 * row.scale)) ** 2)
+    return float(np.sqrt(np.mean(squares))) if squares else 0.0
+
+
+def residual_of(misfit: Misfit) -> FloatArray:
+    """Return the residual, whose root sum square is the value of the misfit."""
+    parts = []
+    for row in misfit.channels:
+        difference = (row.channel.orders.values - row.ours.values) / row.scale
+        mean = (row.channel.orders.mean - row.ours.mean) / row.static if row.compares_mean else 0.0
+        parts.append(np.concatenate([difference.real, difference.imag, [mean]]))
+    return np.asarray(np.concatenate(parts) / np.sqrt(len(parts)), dtype=np.float64)
+
+
+def _without(residual: FloatArray, taken_up: FloatArray) -> float:
+    """Size of a residual without the directions that are taken up."""
+    return float(np.linalg.norm(residual - taken_up @ (taken_up.T @ residual)))
+
+
+def _between(one: FloatArray, other: FloatArray, taken_up: FloatArray) -> tuple[float, float]:
+    """Share of the way from one residual to another with the smallest size, and this size."""
+    start = one - taken_up @ (taken_up.T @ one)
+    change = other - taken_up @ (taken_up.T @ other) - start
+    square = float(change @ change)
+    share = float(np.clip(-(start @ change) / square, 0.0, 1.0)) if square > 0.0 else 0.0
+    return share, float(np.linalg.norm(start + share * change))
+
+
+def without_step(path: Path, number: int) -> tuple[Step, ...]:
+    """Return the steps of a path without one of them."""
+    return (*path.steps[:number], *path.steps[number + 1 :])
+
+
+__all__ = ["BudgetSpentError", "Motions", "Path", "Search", "Step", "Trial", "residual_of", "without_step"]
