@@ -3,8 +3,8 @@ Does Mathieu's equation come out exactly?
 =========================================
 
 x″ + (a − 2q cos 2t) x = 0 grows between the characteristic values b_m(q) and a_m(q), green, which scipy
-computes by a method of its own. Stable points have multipliers of modulus one here, so no bound can decide
-them.
+computes by a method of its own. Stable points have multipliers of modulus one here: the symmetry of the
+equation proves it, so that they are neutral.
 """
 
 import numpy as np
@@ -32,7 +32,7 @@ def compute() -> xr.Dataset:
 
 
 def draw(result: xr.Dataset) -> Figure:
-    """Chart, unstable hatched and undecided dotted, with the exact boundaries over it."""
+    """Chart, unstable hatched and neutral with circles, with the exact boundaries over it."""
     figure = plot(result)
     q = np.linspace(0.0, 2.0, 101)
     axes = figure.axes[0]

@@ -2,11 +2,13 @@ from .engine.chart import scan as scan
 from .engine.coefficients import FourierSeries as FourierSeries
 from .engine.coefficients import PeriodicMatrix as PeriodicMatrix
 from .engine.coefficients import PiecewisePolynomial as PiecewisePolynomial
+from .engine.many_multipliers import FastMultipliers as FastMultipliers
 from .engine.monodromy import Monodromy as Monodromy
 from .engine.monodromy import monodromy as monodromy
 from .engine.multipliers import Spectrum as Spectrum
 from .engine.propagators.one_step import Propagator as Propagator
 from .engine.propagators.registry import PROPAGATORS as PROPAGATORS
+from .engine.sampled_nodes import PeriodicSystems as PeriodicSystems
 from .engine.second_order import SecondOrderSystem as SecondOrderSystem
 from .engine.second_order import from_second_order as from_second_order
 from .engine.system import PeriodicSystem as PeriodicSystem
@@ -37,7 +39,6 @@ from .gear.tongues import predicted_lines as predicted_lines
 from .gear.tongues import stability_boundaries as stability_boundaries
 from .gear.tongues import stability_margins as stability_margins
 from .rank_one.batch import FastMonodromy as FastMonodromy
-from .rank_one.batch import FastMultipliers as FastMultipliers
 from .rank_one.batch import fast_monodromies as fast_monodromies
 from .rank_one.batch import fast_multipliers as fast_multipliers
 from .rank_one.system import Gains as Gains

@@ -11,15 +11,18 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
+from floquet.engine.neutral import hamiltonian
 from lumped.arguments import real_array, real_number, real_numbers
 from lumped.errors import refuse, shown
 from lumped.typing import FloatArray
 
 _U = 0.5 * float(np.finfo(np.float64).eps)
+_SAME_PERIOD = 1e-9  # part of a period by which two statements of one period may differ
 
 
 class Coefficient(ABC):
@@ -43,25 +46,30 @@ class Coefficient(ABC):
         Returns (k, degree + 1) coefficients of the powers of s, and (k,) bounds on their errors.
         """
 
-    def repeats(self, period: float) -> bool:
-        """Whether the function has the same values one period later.
+    @property
+    def own_period(self) -> float | None:
+        """The shortest period that the function states [s]; None: a constant, a sum or a product."""
+        return None
 
-        True for a function with breaks: only its first period is used.
+    @abstractmethod
+    def repeats(self, period: float) -> bool:
+        """Whether the function repeats after a period [s] of the system, to 1e-9 of the period.
+
+        The period of the system is a whole number of periods of the function.
         """
-        if self.breaks:
-            return True
-        times = period * np.array([0.0, 0.17, 0.31, 0.47, 0.61, 0.83])
-        first = self(times)
-        later = self(times + period)
-        return bool(np.abs(later - first).max() <= 1e-9 * np.abs(first).max())
+
+    def over(self, period: float) -> Coefficient:
+        """The function with all its pieces from 0 to the period [s] of the system, which it `repeats`."""
+        del period
+        return self
 
     def __add__(self, other: Coefficient | float) -> Coefficient:
         """The sum."""
-        return _Sum(self, _as_coefficient(other))
+        return Sum(self, _as_coefficient(other))
 
     def __mul__(self, other: Coefficient | float) -> Coefficient:
         """The product."""
-        return _Product(self, _as_coefficient(other))
+        return Product(self, _as_coefficient(other))
 
     def __neg__(self) -> Coefficient:
         """The negative."""
@@ -82,19 +90,46 @@ class Coefficient(ABC):
 class PiecewisePolynomial(Coefficient):
     """One polynomial on each interval between increasing times.
 
+    In a `PeriodicSystem` the pieces together are one period of the function, or the period of the system is a
+    whole number of times as long.
+
     Parameters
     ----------
-    breaks : (P+1,) ends of the pieces [s]; the first and the last piece continue beyond the ends
+    breaks : (P+1,) ends of the pieces [s]; a polynomial by itself continues beyond the ends
     coefficients : (P, d+1) of the powers of the time since the start of the piece, lowest power first
     """
 
     def __init__(self, breaks: npt.ArrayLike, coefficients: npt.ArrayLike) -> None:
         self._ends = real_numbers("breaks", breaks, increasing=True, unit="s")
-        self._rows = np.atleast_2d(real_array("coefficients", coefficients))
-        if self._rows.shape[0] != self._ends.size - 1 or not np.isfinite(self._rows).all():
+        self.rows = np.atleast_2d(real_array("coefficients", coefficients))
+        if self.rows.shape[0] != self._ends.size - 1 or not np.isfinite(self.rows).all():
             allowed = f"({self._ends.size - 1}, degree + 1), finite"
-            raise refuse("coefficients", f"shape {self._rows.shape}", allowed, "Give one row per piece.")
+            raise refuse("coefficients", f"shape {self.rows.shape}", allowed, "Give one row per piece.")
         self.breaks = tuple(self._ends.tolist())
+        self._span = float(self._ends[-1] - self._ends[0])
+
+    @property
+    def own_period(self) -> float:
+        """See `Coefficient`: the pieces together."""
+        return self._span
+
+    def repeats(self, period: float) -> bool:
+        """See `Coefficient`."""
+        return _whole(period, self._span) > 0
+
+    def over(self, period: float) -> PiecewisePolynomial:
+        """See `Coefficient`; the breaks of each repetition are rounded."""
+        start, end = self._ends[[0, -1]]
+        count = _whole(period, self._span)
+        if count == 1 and start <= 0.0 and end >= period * (1.0 - _SAME_PERIOD):
+            return self
+        first = math.floor(-start / self._span)
+        last = first + count + bool(start + first * self._span < 0.0)
+        ends = np.concatenate([self._ends[:-1] + k * self._span for k in range(first, last)])
+        ends = np.append(ends, start + last * self._span)
+        repeated = PiecewisePolynomial(ends, np.tile(self.rows, (last - first, 1)))
+        repeated._span = count * self._span
+        return repeated
 
     def _piece(self, times: FloatArray) -> npt.NDArray[np.intp]:
         return np.clip(np.searchsorted(self._ends, times, side="right") - 1, 0, self._ends.size - 2)
@@ -104,30 +139,50 @@ class PiecewisePolynomial(Coefficient):
         t = np.asarray(times, dtype=float)
         piece = self._piece(t)
         value = np.zeros_like(t)
-        for j in range(self._rows.shape[1] - 1, -1, -1):
-            value = value * (t - self._ends[piece]) + self._rows[piece, j]
+        for j in range(self.rows.shape[1] - 1, -1, -1):
+            value = value * (t - self._ends[piece]) + self.rows[piece, j]
         return value
 
     def taylor(self, start: FloatArray, length: FloatArray, degree: int) -> tuple[FloatArray, FloatArray]:
-        """See `Coefficient`; the time since the start of the piece is wrong by 2 u of the times."""
+        """See `Coefficient`."""
         piece = self._piece(start)  # the middle of a piece one unit in the last place wide rounds to its end
-        x = start - self._ends[piece]
-        rows = self._rows[piece]
-        highest = rows.shape[1] - 1
-        reach = np.abs(x) + length
-        sizes = np.abs(rows) * reach[:, None] ** np.arange(highest + 1)
-        slope = (sizes * np.arange(highest + 1)).sum(axis=1) / reach
-        place = 4.0 * _U * (np.abs(start) + np.abs(self._ends[piece]) + length)
-        shifted = rows.copy()
-        for j in range(highest):
-            for i in range(highest - 1, j - 1, -1):
-                shifted[:, i] += x * shifted[:, i + 1]
-        shifted *= length[:, None] ** np.arange(highest + 1)
-        errors = (4.0 * highest + 8.0) * _U * sizes.sum(axis=1) + place * slope
-        errors += np.abs(shifted[:, degree + 1 :]).sum(axis=1)
-        out = np.zeros((start.size, degree + 1))
-        out[:, : highest + 1] = shifted[:, : degree + 1]
-        return out, errors
+        return polynomial_taylor(Polynomials(self._ends[piece], self.rows[piece]), start, length, degree)
+
+
+class Polynomials(NamedTuple):
+    """A polynomial for each of k steps.
+
+    Attributes
+    ----------
+    origins : (k,) times [s] from which their time counts
+    rows : (k, d+1) of the powers of this time, lowest power first
+    """
+
+    origins: FloatArray
+    rows: FloatArray
+
+
+def polynomial_taylor(
+    polynomials: Polynomials, start: FloatArray, length: FloatArray, degree: int
+) -> tuple[FloatArray, FloatArray]:
+    """`Coefficient.taylor` of polynomials; the time since their origin is wrong by 2 u of the times."""
+    origins, rows = polynomials
+    x = start - origins
+    highest = rows.shape[1] - 1
+    reach = np.abs(x) + length
+    sizes = np.abs(rows) * reach[:, None] ** np.arange(highest + 1)
+    slope = (sizes * np.arange(highest + 1)).sum(axis=1) / reach
+    place = 4.0 * _U * (np.abs(start) + np.abs(origins) + length)
+    shifted = rows.copy()
+    for j in range(highest):
+        for i in range(highest - 1, j - 1, -1):
+            shifted[:, i] += x * shifted[:, i + 1]
+    shifted *= length[:, None] ** np.arange(highest + 1)
+    errors = (4.0 * highest + 8.0) * _U * sizes.sum(axis=1) + place * slope
+    errors += np.abs(shifted[:, degree + 1 :]).sum(axis=1)
+    out = np.zeros((start.size, degree + 1))
+    out[:, : highest + 1] = shifted[:, : degree + 1]
+    return out, errors
 
 
 class FourierSeries(Coefficient):
@@ -144,12 +199,24 @@ class FourierSeries(Coefficient):
         self, period: float, mean: float, cosines: Sequence[float] = (), sines: Sequence[float] = ()
     ) -> None:
         count = max(len(cosines), len(sines))
-        self._omega = 2.0 * math.pi / real_number("period", period, 0.0, above=True, unit="s")
+        self._period = real_number("period", period, 0.0, above=True, unit="s")
+        self._omega = 2.0 * math.pi / self._period
         self._mean = real_number("mean", mean)
         self._a, self._b = (np.zeros(count) for _ in range(2))
         self._a[: len(cosines)] = cosines
         self._b[: len(sines)] = sines
         self._order = np.arange(1, count + 1)
+
+    @property
+    def own_period(self) -> float | None:
+        """See `Coefficient`; harmonics of the orders 2, 4, 6 alone have half the period, and so on."""
+        orders = self._order[(self._a != 0.0) | (self._b != 0.0)]
+        return self._period / float(np.gcd.reduce(orders)) if orders.size else None
+
+    def repeats(self, period: float) -> bool:
+        """See `Coefficient`."""
+        own_period = self.own_period
+        return own_period is None or _whole(period, own_period) > 0
 
     def __call__(self, times: npt.ArrayLike) -> FloatArray:
         """See `Coefficient`."""
@@ -157,62 +224,131 @@ class FourierSeries(Coefficient):
         return np.asarray(self._mean + np.cos(angle) @ self._a + np.sin(angle) @ self._b)
 
     def taylor(self, start: FloatArray, length: FloatArray, degree: int) -> tuple[FloatArray, FloatArray]:
-        """See `Coefficient`; cos and sin of the library are taken to be right to 4 u."""
-        angle = start[:, None] * self._omega * self._order
-        turn = length[:, None] * self._omega * self._order
-        cos = np.cos(angle)
-        sin = np.sin(angle)
-        derivatives = [self._a * cos + self._b * sin, self._b * cos - self._a * sin]
-        size = np.abs(self._a) + np.abs(self._b)
-        out = np.zeros((start.size, degree + 1))
-        factor = np.ones_like(turn)
-        for j in range(degree + 1):
-            sign = 1.0 if j % 4 < 2 else -1.0
-            out[:, j] = sign * (derivatives[j % 2] * factor).sum(axis=1)
-            factor = factor * turn / (j + 1)
-        out[:, 0] += self._mean
-        # Lagrange's remainder, and the rounding of the angle, of cos and sin and of the sums. 1e-3: the rest.
-        rounding = (
-            (4.0 * np.abs(angle) + 4.0 * degree + 16.0 + self._order.size)
-            * _U
-            * np.exp(np.minimum(turn, 500.0))
-        )
-        return out, 1.001 * (size * (factor + rounding)).sum(axis=1) + 2.0 * _U * abs(self._mean)
+        """See `Coefficient`."""
+        return harmonics_taylor(self.harmonics, start, length, degree)
+
+    @property
+    def harmonics(self) -> Harmonics:
+        """The numbers of the series, as those of one step."""
+        return Harmonics(np.array([self._omega]), np.array([self._mean]), self._a[None], self._b[None])
 
 
-class _Sum(Coefficient):
+class Harmonics(NamedTuple):
+    """A Fourier series for each of k steps; k = 1: the same one for all steps.
+
+    Attributes
+    ----------
+    omega : (k,) angular frequency of the first harmonic [rad/s]
+    mean : (k,)
+    cosines, sines : (k, harmonics)
+    """
+
+    omega: FloatArray
+    mean: FloatArray
+    cosines: FloatArray
+    sines: FloatArray
+
+
+def harmonics_taylor(
+    harmonics: Harmonics, start: FloatArray, length: FloatArray, degree: int
+) -> tuple[FloatArray, FloatArray]:
+    """`Coefficient.taylor` of Fourier series; cos and sin of the library are taken to be right to 4 u."""
+    omega, mean, a, b = harmonics
+    order = np.arange(1, a.shape[1] + 1)
+    angle = (start * omega)[:, None] * order
+    turn = (length * omega)[:, None] * order
+    cos = np.cos(angle)
+    sin = np.sin(angle)
+    derivatives = [a * cos + b * sin, b * cos - a * sin]
+    size = np.abs(a) + np.abs(b)
+    out = np.zeros((start.size, degree + 1))
+    factor = np.ones_like(turn)
+    for j in range(degree + 1):
+        sign = 1.0 if j % 4 < 2 else -1.0
+        out[:, j] = sign * (derivatives[j % 2] * factor).sum(axis=1)
+        factor = factor * turn / (j + 1)
+    out[:, 0] += mean
+    # Lagrange's remainder, and the rounding of the angle, of cos and sin and of the sums. 1e-3: the rest.
+    rounding = (4.0 * np.abs(angle) + 4.0 * degree + 16.0 + order.size) * _U * np.exp(np.minimum(turn, 500.0))
+    return out, 1.001 * (size * (factor + rounding)).sum(axis=1) + 2.0 * _U * np.abs(mean)
+
+
+class OfTwo(Coefficient):
+    """A sum or a product."""
+
     def __init__(self, first: Coefficient, second: Coefficient) -> None:
-        self._first = first
-        self._second = second
+        self.first = first
+        self.second = second
         self.breaks = first.breaks + second.breaks
 
+    def repeats(self, period: float) -> bool:
+        """See `Coefficient`: both parts repeat, or without breaks the samples of the sum or product do."""
+        if self.first.repeats(period) and self.second.repeats(period):
+            return True
+        if self.breaks:
+            return False
+        times = period * np.array([0.0, 0.17, 0.31, 0.47, 0.61, 0.83])
+        first = self(times)
+        return bool(np.abs(self(times + period) - first).max() <= _SAME_PERIOD * np.abs(first).max())
+
+    def over(self, period: float) -> Coefficient:
+        """See `Coefficient`."""
+        return type(self)(self.first.over(period), self.second.over(period)) if self.breaks else self
+
+
+class Sum(OfTwo):
+    """A sum of two coefficients."""
+
     def __call__(self, times: npt.ArrayLike) -> FloatArray:
-        return self._first(times) + self._second(times)
+        return self.first(times) + self.second(times)
 
     def taylor(self, start: FloatArray, length: FloatArray, degree: int) -> tuple[FloatArray, FloatArray]:
-        (a, da), (b, db) = (f.taylor(start, length, degree) for f in (self._first, self._second))
-        return a + b, (da + db + 2.0 * _U * (np.abs(a) + np.abs(b)).sum(axis=1)) * (1.0 + 8.0 * _U)
+        parts = (Series(*f.taylor(start, length, degree)) for f in (self.first, self.second))
+        return sum_taylor(*parts)
 
 
-class _Product(Coefficient):
-    def __init__(self, first: Coefficient, second: Coefficient) -> None:
-        self._first = first
-        self._second = second
-        self.breaks = first.breaks + second.breaks
+class Product(OfTwo):
+    """A product of two coefficients."""
 
     def __call__(self, times: npt.ArrayLike) -> FloatArray:
-        return self._first(times) * self._second(times)
+        return self.first(times) * self.second(times)
 
     def taylor(self, start: FloatArray, length: FloatArray, degree: int) -> tuple[FloatArray, FloatArray]:
-        (a, da), (b, db) = (f.taylor(start, length, degree) for f in (self._first, self._second))
-        out = np.zeros((start.size, 2 * degree + 1))
-        for j in range(degree + 1):
-            out[:, j : j + degree + 1] += a[:, j, None] * b
-        size_a = np.abs(a).sum(axis=1)
-        size_b = np.abs(b).sum(axis=1)
-        errors = np.abs(out[:, degree + 1 :]).sum(axis=1) + da * size_b + db * size_a + da * db
-        errors += (degree + 8.0) * 2.0 * _U * size_a * size_b
-        return out[:, : degree + 1], errors * (1.0 + 8.0 * _U)
+        parts = (Series(*f.taylor(start, length, degree)) for f in (self.first, self.second))
+        return product_taylor(*parts)
+
+
+class Series(NamedTuple):
+    """Polynomials (k, degree + 1) on k steps, and bounds (k,) on their errors."""
+
+    coefficients: FloatArray
+    errors: FloatArray
+
+
+def sum_taylor(first: Series, second: Series) -> tuple[FloatArray, FloatArray]:
+    """`Coefficient.taylor` of a sum."""
+    (a, da), (b, db) = first, second
+    return a + b, (da + db + 2.0 * _U * (np.abs(a) + np.abs(b)).sum(axis=1)) * (1.0 + 8.0 * _U)
+
+
+def product_taylor(first: Series, second: Series) -> tuple[FloatArray, FloatArray]:
+    """`Coefficient.taylor` of a product."""
+    (a, da), (b, db) = first, second
+    degree = a.shape[1] - 1
+    out = np.zeros((len(a), 2 * degree + 1))
+    for j in range(degree + 1):
+        out[:, j : j + degree + 1] += a[:, j, None] * b
+    size_a = np.abs(a).sum(axis=1)
+    size_b = np.abs(b).sum(axis=1)
+    errors = np.abs(out[:, degree + 1 :]).sum(axis=1) + da * size_b + db * size_a + da * db
+    errors += (degree + 8.0) * 2.0 * _U * size_a * size_b
+    return out[:, : degree + 1], errors * (1.0 + 8.0 * _U)
+
+
+def _whole(period: float, of_function: float) -> int:
+    """How many periods of a function are one period of a system; 0: no whole number."""
+    count = round(period / of_function)
+    return count if abs(period - count * of_function) <= _SAME_PERIOD * of_function * max(count, 1) else 0
 
 
 def _as_coefficient(value: Coefficient | float) -> Coefficient:
@@ -236,7 +372,7 @@ class PeriodicMatrix:
     dimension : n
     breaks : times at which a coefficient jumps or has a kink [s]
     functions : the f_j
-    matrices : (1 + terms, n, n) B_0, B_1, ...
+    matrices, errors : (1 + terms, n, n) B_0, B_1, ..., and bounds on the errors of their entries
 
     Raises
     ------
@@ -259,36 +395,35 @@ class PeriodicMatrix:
         self.matrices = np.stack(matrices)
         self.functions = tuple(function for function, _ in terms)
         self.breaks = tuple(sorted({t for function in self.functions for t in function.breaks}))
-        self._errors = np.zeros_like(self.matrices) if errors is None else errors
+        self.errors = np.zeros_like(self.matrices) if errors is None else errors
+
+    @property
+    def hamiltonian(self) -> bool:
+        """Whether J A(t) is symmetric at all times, J = [[0, I], [-I, 0]], by the exact matrices."""
+        return not self.errors.any() and hamiltonian(self.matrices)
+
+    def over(self, name: str, period: float) -> PeriodicMatrix:
+        """The matrix with all pieces of its functions from 0 to the period [s]; refuses another period.
+
+        ``name`` is that of the matrix in the refusal.
+        """
+        for k, function in enumerate(self.functions, 1):
+            if not function.repeats(period):
+                allowed = f"a function that repeats after the period, {period:g} s"
+                stated = function.own_period
+                value = "another period" if stated is None else f"the period {stated:g} s"
+                raise refuse(f"{name}, term {k}", value, allowed, "Correct one of the two periods.")
+        functions = [function.over(period) for function in self.functions]
+        if all(new is old for new, old in zip(functions, self.functions, strict=True)):
+            return self
+        return PeriodicMatrix(
+            self.matrices[0], *zip(functions, self.matrices[1:], strict=True), errors=self.errors
+        )
 
     def __call__(self, times: FloatArray) -> FloatArray:
         """Values at times (k,), (k, n, n)."""
         factors = np.stack([np.ones(np.shape(times)), *(f(times) for f in self.functions)], axis=-1)
         return np.tensordot(factors, self.matrices, axes=1)
-
-    def taylor(
-        self, start: FloatArray, length: FloatArray, degree: int, scaling: FloatArray
-    ) -> tuple[FloatArray, FloatArray]:
-        """Polynomials of A_ij d_j/d_i, (k, degree + 1, n, n), and bounds (k,) on the norms of their errors.
-
-        The scaling is by powers of two, which is exact.
-        """
-        scale = scaling / scaling[:, None]
-        matrices = self.matrices * scale
-        sizes = np.linalg.norm(matrices, axis=(1, 2))
-        inexact = np.linalg.norm(self._errors * scale, axis=(1, 2))
-        out = np.zeros((start.size, degree + 1, *matrices.shape[1:]))
-        out[:, 0] = matrices[0]
-        rounded = (len(self.functions) + 2.0) * _U
-        total = np.full(start.size, inexact[0] + rounded * sizes[0])
-        for function, matrix, size, matrix_error in zip(
-            self.functions, matrices[1:], sizes[1:], inexact[1:], strict=True
-        ):
-            series, error = function.taylor(start, length, degree)
-            out += series[:, :, None, None] * matrix
-            reach = np.abs(series).sum(axis=1) + error
-            total += error * (size + matrix_error) + reach * (matrix_error + rounded * size)
-        return out, total * (1.0 + 1e-9)
 
 
 def square(field: str, value: npt.ArrayLike, n: int | None = None) -> FloatArray:

@@ -14,6 +14,7 @@ from numpy.polynomial.legendre import leggauss
 from floquet.engine.coefficients import PeriodicMatrix
 from floquet.engine.formula_steps import proven_propagation
 from floquet.engine.multipliers import Certificate, Spectrum, multipliers_with_bounds
+from floquet.engine.neutral import on_unit_circle
 from floquet.engine.propagation import LOOKS, Propagation, error_of_product, propagate
 from floquet.engine.propagators.one_step import Propagator
 from floquet.engine.propagators.registry import propagator
@@ -22,8 +23,8 @@ from lumped.arguments import of_type, real_number, whole_number
 from lumped.errors import NumericalError
 from lumped.typing import FloatArray
 
-# Where |M| is below this, the tolerance is no longer relative: such a system is dead after one period.
-_DEAD = 1e-150
+DEAD = 1e-150
+"""Where |M| is below this, the tolerance is no longer relative: such a system is dead after one period."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,7 +97,7 @@ def monodromy(
     for _attempt in range(4):
         propagation = propagate(system, step, local, max_substeps)
         M, delta, rounding = error_of_product(propagation)
-        size = max(float(np.linalg.norm(M, 2)), _DEAD)
+        size = max(float(np.linalg.norm(M, 2)), DEAD)
         if delta <= rtol * size:
             return _record(system, propagation, M, delta, step.name, "estimate")
         if rounding > 0.9 * rtol * size:
@@ -136,6 +137,8 @@ def _record(
 ) -> Monodromy:
     d = propagation.scaling
     multipliers, bounds = multipliers_with_bounds(balanced, delta)
+    symplectic = certificate == "proven" and system.symplectic
+    circle = on_unit_circle(balanced[None], np.array([delta]), multipliers[None], bounds[None])
     return Monodromy(
         multipliers=multipliers,
         multiplier_errors=bounds,
@@ -147,12 +150,14 @@ def _record(
         method=method,
         resolution=0.0 if certificate == "proven" else system.period / LOOKS,
         certificate=certificate,
+        symplectic=symplectic,
+        neutral=symplectic and bool(circle[0]),
     )
 
 
 def _proven(system: PeriodicSystem, A: PeriodicMatrix, rtol: float, max_substeps: int) -> Monodromy:
     propagation, M, delta = proven_propagation(system, A, rtol, max_substeps)
-    size = max(float(np.linalg.norm(M, 2)), _DEAD)
+    size = max(float(np.linalg.norm(M, 2)), DEAD)
     if not delta <= rtol * size:
         raise NumericalError(
             f"rtol = {rtol:g} cannot be proven: the bound on the error of the monodromy matrix is "

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from scipy.linalg import schur
 from scipy.linalg.lapack import ztrsen
 
-from lumped.typing import ComplexArray, FloatArray
+from lumped.typing import BoolArray, ComplexArray, FloatArray
 
 Certificate = Literal["proven", "estimate"]
 """What an error is: a bound by a theorem, rounding included, or an estimate from samples."""
@@ -169,9 +169,24 @@ def radii_with_bounds(multipliers: ComplexArray, errors: FloatArray) -> tuple[Fl
     return radius, (modulus + errors).max(axis=-1) - radius
 
 
-def verdicts(radius: FloatArray, error: FloatArray) -> npt.NDArray[np.int8]:
-    """1 stable, 0 undecided where radius +- error contains 1, -1 unstable; any shape."""
-    return np.asarray(radius + error < 1.0, dtype=np.int8) - np.asarray(radius - error > 1.0, dtype=np.int8)
+VERDICTS = {-1: "unstable", 0: "undecided", 1: "stable", 2: "neutral"}
+"""Verdicts by their number in a chart."""
+STABLE = ("stable", "neutral")
+"""Verdicts of motions that stay bounded."""
+_WORDS = {"neutral": "stable (neutral): on the unit circle, proven"}
+_BOUNDARY = "undecided: on a boundary of stability within the bounds, without damping"
+
+
+def verdicts(
+    radius: FloatArray, error: FloatArray, neutral: BoolArray | bool = False
+) -> npt.NDArray[np.int8]:
+    """Numbers of `VERDICTS`, any shape: 1 stable, 0 undecided where radius +- error contains 1, -1 unstable.
+
+    2 neutral where all multipliers are proven to be simple and on the unit circle.
+    """
+    decided = np.asarray(radius + error < 1.0, dtype=np.int8)
+    decided = decided - np.asarray(radius - error > 1.0, dtype=np.int8)
+    return np.asarray(np.where(neutral, np.int8(2), decided), dtype=np.int8)
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,12 +200,16 @@ class Spectrum:
     period : T [s]
     certificate : "proven" where the errors are bounds by a theorem, rounding included; "estimate" where they
         rest on samples
+    symplectic : whether the coefficients prove that 1/conj(m) is a multiplier with each multiplier m
+    neutral : whether all multipliers are proven to be simple and on the unit circle, `on_unit_circle`
     """
 
     multipliers: ComplexArray
     multiplier_errors: FloatArray
     period: float
     certificate: Certificate = field(default="estimate", kw_only=True)
+    symplectic: bool = field(default=False, kw_only=True)
+    neutral: bool = field(default=False, kw_only=True)
 
     @cached_property
     def _radius(self) -> tuple[float, float]:
@@ -209,9 +228,22 @@ class Spectrum:
 
     @property
     def verdict(self) -> str:
-        """One of "stable", "unstable", and "undecided" when ``spectral_radius`` +- ``error`` contains 1."""
+        """One of `VERDICTS`.
+
+        "stable" and "unstable" where ``spectral_radius`` +- ``error`` does not contain 1; "neutral" where all
+        multipliers are proven to be simple and on the unit circle, so that motions without damping stay
+        bounded; else "undecided".
+        """
         radius, error = (np.array(value) for value in self._radius)
-        return ("undecided", "stable", "unstable")[int(verdicts(radius, error))]
+        return VERDICTS[int(verdicts(radius, error, self.neutral))]
+
+    @property
+    def verdict_words(self) -> str:
+        """The verdict in words: what "neutral" means, and what an undecided system without damping is."""
+        verdict = self.verdict
+        if verdict == "undecided" and self.symplectic:
+            return _BOUNDARY
+        return _WORDS.get(verdict, verdict)
 
     @property
     def exponents(self) -> ComplexArray:

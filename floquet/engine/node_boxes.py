@@ -40,7 +40,7 @@ class EvaluatedNodes(NamedTuple):
     radius : (k,) spectral radius
     growth : (k,) cycles in a unit of time times the logarithm of the radius
     gap : (k,) distance of multipliers from a tongue
-    verdict : (k,) 1 stable, 0 undecided, -1 unstable
+    verdict : (k,) 1 stable, 0 undecided, -1 unstable, 2 neutral
     """
 
     columns: IntArray
@@ -275,7 +275,7 @@ def _judged(box: Box, nodes: EvaluatedNodes, cycles: FloatArray, tolerance: floa
             growth = _interpolated(low, high, _share(j, box.low, box.high))
             error = abs(math.exp(growth / cycles[i]) - radius)
             allowed = tolerance * max(radius, 1.0)
-            if verdict != 0:
+            if abs(verdict) == 1:
                 allowed = min(allowed, 0.5 * abs(radius - 1.0))
             is_bilinear = is_bilinear and error <= allowed
             misfit = max(misfit, error)

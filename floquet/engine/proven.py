@@ -17,9 +17,10 @@ sections are those of docs/theory/proven_bounds.md. tests/floquet/engine/test_pr
 | a formula for A(t) is its Taylor polynomial but for this | floquet/engine/coefficients.py: PeriodicMatrix | Coefficients given as formulas |
 | M, C and K as formulas give A(t) but for this | floquet/engine/second_order.py: _Solution | Coefficients given as formulas |
 | the flow over a step with A(t) as a formula is wrong by at most this | floquet/engine/formula_steps.py: _steps | The matrix of a step |
-| the product of any steps is wrong by at most this | floquet/engine/formula_steps.py: proven_product | The product |
-| each disk holds an eigenvalue: quick bound, by eigenvectors | floquet/rank_one/kernels/eigenvalue_bounds.py: spectra | Multipliers |
+| the product of any steps is wrong by at most this | floquet/engine/kernels/steps.py: product_bounds | The product |
+| each disk holds an eigenvalue: quick bound, by eigenvectors | floquet/engine/kernels/eigenvalue_bounds.py: spectra | Multipliers |
 | each disk holds an eigenvalue: careful bound, by the Schur form | floquet/engine/multipliers.py: multipliers_with_bounds | Multipliers |
+| without damping all multipliers are simple and on the unit circle | floquet/engine/neutral.py: on_unit_circle | On the unit circle |
 | motions off the line of action have these multipliers | floquet/gear/multipliers.py: OffLineOfAction | Multipliers |
 | with teeth that differ the rate is wrong by at most this | floquet/gear/multipliers.py: _of_cycles | Teeth that differ |
 | all slower speeds are stable | floquet/rank_one/boxes.py: slow_period | Between the nodes of a chart |

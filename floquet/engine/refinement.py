@@ -40,7 +40,7 @@ class NodeValues(NamedTuple):
     Attributes
     ----------
     radius : (k,) spectral radius
-    verdict : (k,) 1 stable, 0 undecided, -1 unstable
+    verdict : (k,) 1 stable, 0 undecided, -1 unstable, 2 neutral
     gap : (k,) `gaps` of the multipliers; gaps of 0 are not followed
     """
 
@@ -60,7 +60,7 @@ class Refined:
     Attributes
     ----------
     radius : spectral radius, interpolated where ``known`` is False
-    verdict : 1 stable, 0 undecided, -1 unstable; the verdict of the leaf where ``known`` is False
+    verdict : 1 stable, 0 undecided, -1 unstable, 2 neutral; the verdict of the leaf where ``known`` is False
     known : whether the node was evaluated
     misfit : largest misfit of the evaluated nodes of the leaf, at least the tolerance; 0 at evaluated nodes
     """

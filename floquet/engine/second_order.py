@@ -16,6 +16,7 @@ import numpy.typing as npt
 from scipy.linalg import LinAlgError, cholesky, eigh
 
 from floquet.engine.coefficients import PeriodicMatrix, square
+from floquet.engine.neutral import conservative
 from floquet.engine.system import PeriodicSystem, second_order
 from lumped.arguments import real_number
 from lumped.errors import NumericalError, refuse
@@ -37,9 +38,17 @@ class SecondOrderSystem(PeriodicSystem):
     ----------
     coordinates : (n, n) T; where M is symmetric and positive definite, the modes of M and the symmetric part
         of the mean of K, with modal mass one
+    conservative : whether M and K(t) are exactly symmetric and C is exactly skew and constant: no motion is
+        damped or driven. False where C or K is a callable
     """
 
     coordinates: FloatArray = field(kw_only=True, repr=False)
+    conservative: bool = field(default=False, kw_only=True)
+
+    @property
+    def symplectic(self) -> bool:
+        """See `PeriodicSystem`; proven by M, C and K, because A(t) is rounded."""
+        return self.conservative
 
 
 def from_second_order(
@@ -48,7 +57,8 @@ def from_second_order(
     """Return M x'' + C(t) x' + K(t) x = 0 as a `PeriodicSystem`.
 
     C and K need not be symmetric: gyroscopic and circulatory parts belong to them. Errors are proven bounds,
-    rounding of M^-1 K included, where neither of them is a callable.
+    rounding of M^-1 K included, where neither of them is a callable. Without damping, stability is proven too
+    (verdict "neutral") where M and all matrices of K are exactly symmetric and C is 0 or constant and skew.
 
     Parameters
     ----------
@@ -75,7 +85,9 @@ def from_second_order(
     damping = _checked("C", C, n, period)
     stiffness = _checked("K", K, n, period)
     # Breaks of the formulas, and a first check of the callables.
-    places = PeriodicSystem(lambda t: np.zeros((1, 1)), period, breakpoints).edges
+    places = np.array([0.0, period])
+    if np.size(breakpoints):
+        places = PeriodicSystem(lambda t: np.zeros((1, 1)), period, breakpoints).edges
     middle = 0.5 * (places[:-1] + places[1:])
     C_of, K_of = (_function(name, B, n) for name, B in (("C", damping), ("K", stiffness)))
     C_of(middle)
@@ -83,7 +95,8 @@ def from_second_order(
     T = _coordinates(mass, mean)
     if isinstance(damping, PeriodicMatrix) and isinstance(stiffness, PeriodicMatrix):
         A = _known(mass, damping, stiffness, T)
-        return SecondOrderSystem(A, period, breakpoints, coordinates=T)
+        undamped = conservative(mass, damping.matrices, stiffness.matrices)
+        return SecondOrderSystem(A, period, breakpoints, coordinates=T, conservative=undamped)
     inverse = np.linalg.inv(mass @ T)
 
     def sampled(times: FloatArray) -> FloatArray:
@@ -104,11 +117,7 @@ def _checked(
     if result.dimension != n:
         shape = f"({result.dimension}, {result.dimension})"
         raise refuse(name, f"shape {shape}", f"that of M, ({n}, {n})", "Check the coordinates of both.")
-    for k, function in enumerate(result.functions, 1):
-        if not function.repeats(period):
-            allowed = f"a function that repeats after the period, {period:g} s"
-            raise refuse(f"{name}, term {k}", "another period", allowed, "Correct one of the two periods.")
-    return result
+    return result.over(name, period)
 
 
 def _function(
@@ -142,25 +151,23 @@ def _known(M: FloatArray, C: PeriodicMatrix, K: PeriodicMatrix, T: FloatArray) -
     n = M.shape[0]
     solve = _Solution(M, T)
 
-    def pair(stiffness: FloatArray, damping: FloatArray) -> tuple[FloatArray, FloatArray]:
-        k, dk = solve(stiffness)
-        c, dc = solve(damping)
-        errors = np.abs(second_order(dk, dc))
-        errors[:n, n:] = 0.0
-        return second_order(k, c), errors
+    matrices = np.concatenate([K.matrices, C.matrices])
+    solved, inexact = solve(matrices)
+    count = len(K.matrices)
+    none = np.zeros_like(matrices[:1])
 
-    none = np.zeros((n, n))
-    constant, error = pair(K.matrices[0], C.matrices[0])
-    terms = []
-    errors = [error]
-    varying = [(f, B, none) for f, B in zip(K.functions, K.matrices[1:], strict=True)]
-    varying += [(f, none, B) for f, B in zip(C.functions, C.matrices[1:], strict=True)]
-    for function, stiffness, damping in varying:
-        matrix, error = pair(stiffness, damping)
-        matrix[:n, n:] = 0.0
-        terms.append((function, matrix))
-        errors.append(error)
-    return PeriodicMatrix(constant, *terms, errors=np.stack(errors))
+    def blocks(X: FloatArray) -> FloatArray:
+        """State matrices of the constant parts, of the terms of K and of the terms of C."""
+        stiffness = [X[:count], np.repeat(none, len(X) - count - 1, axis=0)]
+        damping = [X[count : count + 1], np.repeat(none, count - 1, axis=0), X[count + 1 :]]
+        return second_order(np.concatenate(stiffness), np.concatenate(damping))
+
+    state_matrices = blocks(solved)
+    state_matrices[1:, :n, n:] = 0.0
+    errors = np.abs(blocks(inexact))
+    errors[:, :n, n:] = 0.0
+    functions = (*K.functions, *C.functions)
+    return PeriodicMatrix(state_matrices[0], *zip(functions, state_matrices[1:], strict=True), errors=errors)
 
 
 class _Solution:
@@ -186,6 +193,7 @@ class _Solution:
             raise NumericalError("M is too badly conditioned for bounds. Choose other units or coordinates.")
 
     def __call__(self, B: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """X (k, n, n) of B (k, n, n), and bounds on the errors of its entries."""
         Q = B.astype(_WIDE) @ self.T
         X = np.zeros(B.shape)
         for _ in range(3):
@@ -194,4 +202,6 @@ class _Solution:
         moduli = np.abs(residual).astype(float) + np.abs(B) @ np.abs(self.T).astype(float)
         moduli += 2.0 * self.size @ np.abs(X)
         error = np.abs(self.W @ residual).astype(float) + self.gamma * (self.sizes @ moduli)
-        return X, np.asarray((error + self.g / (1.0 - self.g) * error.max(axis=0)) * (1.0 + 1e-9))
+        return X, np.asarray(
+            (error + self.g / (1.0 - self.g) * error.max(axis=-2, keepdims=True)) * (1.0 + 1e-9)
+        )

@@ -41,7 +41,7 @@ class PeriodicSystem:
     ----------
     A : callable, t [s] -> (n, n); with ``vectorized``, (k,) -> (k, n, n). It is only ever evaluated strictly
         inside the smooth segments, so its value *at* a switch does not matter. Or a `PeriodicMatrix`, whose
-        breaks need not be named.
+        breaks need not be named. The period is then a whole number of periods of each of its functions.
     period : T > 0 [s]
     breakpoints : times in [0, T] at which A jumps or has a kink; 0 and T are always segment ends
     vectorized : whether A takes a vector of times
@@ -54,7 +54,8 @@ class PeriodicSystem:
     Raises
     ------
     ParameterError
-        A period that is not positive, breakpoints outside [0, T], an A that is not square.
+        A period that is not positive, breakpoints outside [0, T], an A that is not square, a function of a
+        `PeriodicMatrix` that does not repeat after the period.
     NumericalError
         A is not finite somewhere inside a segment.
     """
@@ -75,6 +76,7 @@ class PeriodicSystem:
         )
         object.__setattr__(self, "period", period)
         if isinstance(self.A, PeriodicMatrix):
+            object.__setattr__(self, "A", self.A.over("A", period))
             inside = [t for t in self.A.breaks if 0.0 < t < period]
             object.__setattr__(self, "breakpoints", (*self.breakpoints, *inside))
             object.__setattr__(self, "vectorized", True)
@@ -99,6 +101,14 @@ class PeriodicSystem:
             want = "(k, n, n) for k times (vectorized=True)" if self.vectorized else "(n, n)"
             raise refuse("A", f"shape {shape}", want, "Check the shape that the callable returns.")
         object.__setattr__(self, "dimension", int(probe.shape[1]))
+
+    @property
+    def symplectic(self) -> bool:
+        """Whether the coefficients prove that the motion keeps a skew form, so that M is symplectic.
+
+        False for a callable A, of which only samples are known.
+        """
+        return isinstance(self.A, PeriodicMatrix) and self.A.hamiltonian
 
     def _call(self, times: FloatArray) -> FloatArray:
         values = self.A(times) if self.vectorized else [self.A(float(t)) for t in times]

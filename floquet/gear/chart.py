@@ -30,7 +30,14 @@ from floquet.gear.axes import (
     operating_rpm,
     vary,
 )
-from floquet.gear.multipliers import OffLineOfAction, feedback_system, fitted_block, gear_block
+from floquet.gear.multipliers import (
+    OffLineOfAction,
+    feedback_system,
+    fitted_block,
+    gear_block,
+    keeps_energy,
+    stays_bounded,
+)
 from floquet.rank_one.batch import fast_monodromies, fast_multipliers
 from floquet.rank_one.boxes import proven_cells
 from floquet.rank_one.system import RankOneSystem
@@ -302,12 +309,14 @@ class _FamilyBlock(NamedTuple):
     separate : motions that the mesh does not couple
     levels : number of the parts of the gains that have a factor of friction
     period_times_rpm : mesh period [s] times pinion speed [rpm]
+    keeps_energy : see `keeps_energy`
     """
 
     system: RankOneSystem
     separate: OffLineOfAction
     levels: int
     period_times_rpm: float
+    keeps_energy: bool
 
 
 class ChartSlice:
@@ -371,7 +380,10 @@ class ChartSlice:
             levels += [] if family.level is None else [family.level]
             block = fitted_block(feedback, variation.stiffness_variation, max(0.01 * rtol, 1e-12), levels)
             period_times_rpm = block.period * operating_rpm(variation.pair)
-            self._blocks[k] = _FamilyBlock(block, OffLineOfAction.of(feedback), len(levels), period_times_rpm)
+            energy = keeps_energy(feedback, variation.supports)
+            self._blocks[k] = _FamilyBlock(
+                block, OffLineOfAction.of(feedback), len(levels), period_times_rpm, energy
+            )
         return self._blocks[k]
 
     def cells(self, rtol: float, progress: Progress | None) -> IntArray:
@@ -438,7 +450,12 @@ class ChartSlice:
             separate, separate_errors = block.separate.multipliers(T)
             values = np.concatenate([result.multipliers, separate], axis=1)
             errors = np.concatenate([result.errors, separate_errors], axis=1)
-            points.put(places[members], values, errors, True, result.multipliers.shape[1])
+            undamped = damping[members] * self.reference.pair.mesh.damping_ratio == 0.0
+            symplectic = undamped & ~factors[:, : block.levels].any(axis=1)
+            neutral = stays_bounded(
+                result.multipliers, result.errors, symplectic & block.keeps_energy, block.separate
+            )
+            points.put(places[members], values, errors, True, result.multipliers.shape[1], neutral)
 
 
 def _runs(numbers: IntArray) -> Iterator[tuple[int, int]]:

@@ -17,6 +17,7 @@ from scipy.linalg import block_diag, eigh
 from floquet.engine.formula_steps import proven_product
 from floquet.engine.monodromy import integral_of_trace, monodromy
 from floquet.engine.multipliers import Certificate, Spectrum, multipliers_with_bounds, radii_with_bounds
+from floquet.engine.neutral import separate_from_mirror_images
 from floquet.engine.propagators.one_step import Propagator
 from floquet.engine.system import PeriodicSystem
 from floquet.gear.axes import GearVariation
@@ -33,7 +34,7 @@ from lumped.model.tooth_laws import ToothLaws
 from lumped.path_of_contact.friction import friction_misfit
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.meeting_teeth import period_of
-from lumped.typing import ComplexArray, FloatArray
+from lumped.typing import BoolArray, ComplexArray, FloatArray
 
 MODES = 12
 """Modes of a pair on shafts that are coupled at most; the others move each by itself."""
@@ -73,6 +74,39 @@ def feedback_system(variation: GearVariation) -> Feedback:
     s = system.structure
     separate = s.damping[4:] / (2.0 * s.mass[4:]), s.stiffness[4:] / s.mass[4:]
     return Feedback(system, 1.0 / np.abs(system.per_load[0]), separate, misfit)
+
+
+def keeps_energy(feedback: Feedback, supports: Supports) -> bool:
+    """Whether the parameters state that without friction and mesh damping nothing drives or damps the motion.
+
+    On springs without damping, and without tip corners, whose force is not normal to the flanks: M z'' +
+    (K + k(t) v v^T) z = 0 with a symmetric matrix, whatever k(t). On shafts modes are rounded: False.
+    """
+    system = feedback.system
+    m = system.deflection.size
+    damped = bool(system.constant[m:, m:].any())
+    tilt = system.cycle.elements.tilt
+    on_line = tilt is None or not tilt.coefficients.any()
+    return supports == "springs" and not damped and on_line
+
+
+def stays_bounded(
+    values: ComplexArray, errors: FloatArray, symplectic: BoolArray, off_line: OffLineOfAction
+) -> BoolArray:
+    """Whether motions neither all die out nor grow (k,): proven, see docs/theory/floquet.md.
+
+    Parameters
+    ----------
+    values, errors : (k, 2m) multipliers of the feedback block with proven bounds
+    symplectic : (k,) whether the feedback block is symplectic
+    off_line : motions that the feedback block does not read; without friction they have no input either
+    """
+    on_circle = symplectic & separate_from_mirror_images(values, errors)
+    inside = (np.abs(values) + errors < 1.0).all(axis=1)
+    exponents = off_line.exponents
+    undamped = (exponents.real == 0.0) & (exponents.imag != 0.0)
+    fade = exponents.real + off_line.errors < 0.0
+    return np.asarray((undamped | fade).all() & (on_circle | (inside & undamped.any())))
 
 
 def _leading_modes(system: LTVSystem, misfit: FloatArray) -> Feedback:
@@ -363,12 +397,22 @@ def gear_pair_multipliers(
     variation = GearVariation.of(source, supports)
     rtol = real_number("rtol", rtol, 1e-13, 0.1)
     feedback = feedback_system(variation)
+    off_line = OffLineOfAction.of(feedback)
     spectrum: Spectrum
     if isinstance(method, str) and method == "taylor":
-        spectrum = _proven(feedback, variation.stiffness_variation, rtol)
+        spectrum = _proven(feedback, variation, rtol)
+        bounded = bool(
+            stays_bounded(
+                spectrum.multipliers[None],
+                spectrum.multiplier_errors[None],
+                np.array([spectrum.symplectic]),
+                off_line,
+            )[0]
+        )
     else:
         spectrum = monodromy(gear_pair_system(variation, "mesh"), rtol, method=method)
-    (oloa,), (oloa_errors,) = OffLineOfAction.of(feedback).multipliers(np.array([spectrum.period]))
+        bounded = False
+    (oloa,), (oloa_errors,) = off_line.multipliers(np.array([spectrum.period]))
     values = np.concatenate([spectrum.multipliers, oloa])
     errors = np.concatenate([spectrum.multiplier_errors, oloa_errors])
     order = np.argsort(-np.abs(values), kind="stable")
@@ -380,15 +424,29 @@ def gear_pair_multipliers(
         oloa=oloa,
         variation=variation,
         certificate=spectrum.certificate,
+        symplectic=spectrum.symplectic,
+        neutral=bounded,
     )
 
 
-def _proven(feedback: Feedback, factor: float, rtol: float) -> Spectrum:
+def _proven(feedback: Feedback, variation: GearVariation, rtol: float) -> Spectrum:
     """Multipliers of the feedback block by the compiled kernel."""
-    block = fitted_block(feedback, factor, max(0.01 * rtol, 1e-13), [])
+    block = fitted_block(feedback, variation.stiffness_variation, max(0.01 * rtol, 1e-13), [])
+    friction = feedback.system.cycle.elements.friction.coefficients
+    symplectic = (
+        variation.pair.mesh.damping_ratio == 0.0
+        and not friction.any()
+        and keeps_energy(feedback, variation.supports)
+    )
     result = fast_multipliers(block, tolerance=max(1e-4 * rtol, 1e-14))
     order = np.argsort(-np.abs(result.multipliers[0]), kind="stable")
-    return Spectrum(result.multipliers[0][order], result.errors[0][order], block.period, certificate="proven")
+    return Spectrum(
+        result.multipliers[0][order],
+        result.errors[0][order],
+        block.period,
+        certificate="proven",
+        symplectic=symplectic,
+    )
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,9 +13,8 @@ from typing import TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from floquet.engine.multipliers import multipliers_with_bounds
+from floquet.engine.many_multipliers import FastMultipliers, multipliers_of, quick_multipliers
 from floquet.rank_one.kernel_input import own, packed
-from floquet.rank_one.kernels.eigenvalue_bounds import spectra
 from floquet.rank_one.kernels.gains import Limits, Points, most_steps
 from floquet.rank_one.kernels.taylor import propagate_points
 from floquet.rank_one.system import RankOneSystem
@@ -23,7 +22,7 @@ from lumped.arguments import real_array, real_number, real_numbers
 from lumped.cache import cores
 from lumped.compiler import in_threads
 from lumped.errors import NumericalError, refuse, shown
-from lumped.typing import BoolArray, ComplexArray, FloatArray
+from lumped.typing import FloatArray
 
 _T = TypeVar("_T")
 
@@ -44,19 +43,6 @@ class FastMonodromy:
     """
 
     matrices: FloatArray
-    errors: FloatArray
-
-
-@dataclass(frozen=True, eq=False)
-class FastMultipliers:
-    """Multipliers of N variants of one system.
-
-    Attributes
-    ----------
-    multipliers, errors : (N, 2m) with a proven bound on the error of each, dimensionless, in no order
-    """
-
-    multipliers: ComplexArray
     errors: FloatArray
 
 
@@ -153,7 +139,7 @@ def spectral_radii(
     def largest(part: slice) -> FloatArray:
         matrices = flow.matrices[part]
         errors = flow.errors[part]
-        values, _, safe = _quick(matrices, errors)
+        values, _, safe = quick_multipliers(matrices, errors)
         values[~safe] = np.linalg.eigvals(matrices[~safe])
         radii = np.asarray(np.abs(values).max(axis=1))
         near = ~safe & (radii > _DIES_OUT)
@@ -161,23 +147,6 @@ def spectral_radii(
         return radii
 
     return np.concatenate(_in_slices(largest, flow.errors.size))
-
-
-def multipliers_of(matrices: FloatArray, errors: FloatArray) -> FastMultipliers:
-    """Eigenvalues of monodromy matrices (N, n, n), each with a bound, when these are wrong by errors (N,)."""
-    values, radii, safe = _quick(matrices, errors)
-    for point in np.flatnonzero(~safe):
-        values[point], radii[point] = multipliers_with_bounds(matrices[point], float(errors[point]))
-    return FastMultipliers(values, radii)
-
-
-def _quick(matrices: FloatArray, errors: FloatArray) -> tuple[ComplexArray, FloatArray, BoolArray]:
-    """Eigenvalues (N, n), bounds on their errors (N, n), and where the bounds hold (N,)."""
-    values = np.empty(matrices.shape[:2], dtype=complex)
-    radii = np.empty(matrices.shape[:2])
-    safe = np.empty(errors.size, dtype=bool)
-    spectra(matrices, errors, values, radii, safe)
-    return values, radii, safe
 
 
 def _factors(

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from floquet.engine.kernels.simd import LANES
 from floquet.rank_one.kernels.gains import Problem
-from floquet.rank_one.kernels.simd import LANES
 from floquet.rank_one.system import ModalForm, RankOneSystem, padded
 from lumped.typing import FloatArray
 

@@ -68,6 +68,7 @@ def stability(
     prove : Over speed and damping decide every cell between the points of the chart, too: proven stable,
         proven unstable, or unproven and then marked. Takes a few seconds.
     """
+    from floquet.engine.multipliers import STABLE
     from floquet.gear.axes import GEAR_AXES, chart_axes
     from floquet.gear.multipliers import gear_pair_multipliers
     from floquet.gear.tongues import campbell
@@ -88,7 +89,7 @@ def stability(
         print_json({"gear_pair": pair.name, "supports": supports_used} | point)
     else:
         rows = {
-            "verdict": multipliers.verdict,
+            "verdict": multipliers.verdict_words,
             "largest multiplier": f"{multipliers.spectral_radius:.8f}",
             "bound on its error": f"{number(multipliers.error, 2)} ({multipliers.certificate})",
             "margin, 1 - largest multiplier": margin,
@@ -102,7 +103,7 @@ def stability(
         else:
             speeds = grid.get("speed_rpm", chart_axes(pair, *_CHART)["speed_rpm"])
             files.write(campbell(pair, speeds, supports=supports_used))
-    if multipliers.verdict != "stable":
+    if multipliers.verdict not in STABLE:
         raise typer.Exit(FAILED)
 
 
@@ -154,7 +155,7 @@ def _chart(
     grid = dict(axes) or chart_axes(pair, *_CHART)
     with progress_bar("stability chart") as tell:
         chart = stability_chart(pair, grid, rtol=1e-8, prove=prove, supports=supports, progress=tell)
-    stable = chart["verdict"].to_numpy() == 1
+    stable = chart["verdict"].to_numpy() > 0
     radius = chart["spectral_radius"]
     worst = radius.isel(radius.argmax(...))
     stdout().print(
@@ -262,7 +263,8 @@ def floquet(
     """Decide whether M x'' + C(t) x' + K(t) x = 0 is stable, for any matrices with one period.
 
     Prints the Floquet multipliers with proven bounds on their errors; the largest tells by how much a
-    disturbance grows (above 1) or dies (below 1) per period. The exit code is 1 when it is not stable.
+    disturbance grows (above 1) or dies (below 1) per period. Without damping, multipliers that are proven to
+    stay on the unit circle are "stable (neutral)". The exit code is 1 when it is not stable.
 
     [bold]Examples[/bold]
     spurcheck floquet rotor.npz
@@ -277,6 +279,7 @@ def floquet(
     rtol : Wanted error of the monodromy matrix.
     """
     from floquet import monodromy, scan
+    from floquet.engine.multipliers import STABLE
     from lumped.errors import refuse
     from validation.exchange.matrices import FILE_AXES, read_second_order
 
@@ -312,7 +315,7 @@ def floquet(
         if len(rows) > _SHOWN:
             stdout().print(f"and {len(rows) - _SHOWN} smaller ones")
         stdout().print(
-            f"{multipliers.verdict}: largest multiplier {multipliers.spectral_radius:.12g} "
+            f"{multipliers.verdict_words}: largest multiplier {multipliers.spectral_radius:.12g} "
             f"+- {multipliers.error:.1e}, "
             f"which is {'a proven bound' if multipliers.certificate == 'proven' else 'an estimate'}"
         )
@@ -321,11 +324,13 @@ def floquet(
         with progress_bar("chart") as tell:
             chart = scan(lambda point: model.system(**point), grid, labels=labels, rtol=rtol, progress=tell)
         verdict = chart["verdict"].to_numpy()
-        stable, undecided, unstable = (int((verdict == k).sum()) for k in (1, 0, -1))
+        neutral, stable, undecided, unstable = (int((verdict == k).sum()) for k in (2, 1, 0, -1))
         stdout().print(
-            f"chart: {verdict.size} points, {stable} stable, {undecided} undecided, {unstable} unstable; "
+            f"chart: {verdict.size} points, {stable} stable, "
+            + (f"{neutral} stable (neutral), " if neutral else "")
+            + f"{undecided} undecided, {unstable} unstable; "
             f"largest bound on an error {float(chart['error'].max()):.1e}"
         )
         files.write(chart)
-    if multipliers.verdict != "stable":
+    if multipliers.verdict not in STABLE:
         raise typer.Exit(FAILED)

@@ -25,8 +25,8 @@ def payload(results: PageResults) -> dict[str, Any]:
     """Return the data that the script of the page reads.
 
     Numbers are rounded here, so that the page shows the digits of the data file. Arrays of the charts are
-    little-endian in base64: float32 for the largest multiplier, int8 for the verdict (1 stable, 0 undecided,
-    -1 unstable).
+    little-endian in base64: float32 for the largest multiplier, int8 for the verdict (2 neutral, 1 stable,
+    0 undecided, -1 unstable).
     """
     pair = results.pair
     return {

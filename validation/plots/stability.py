@@ -57,9 +57,9 @@ def stability_figure(
 ) -> Figure:
     """Draw how fast disturbances decay over the axes of a chart, with the edges of instability as lines.
 
-    Unstable regions are hatched, undecided nodes dotted. A cross marks a region that is at most two nodes
-    wide: thinner regions may exist beside it. A red dot marks a cell that a proof could not decide. A chart
-    of one axis is drawn as a line.
+    Unstable regions are hatched, undecided nodes dotted, neutral nodes marked with circles. A cross marks a
+    region that is at most two nodes wide: thinner regions may exist beside it. A red dot marks a cell that a
+    proof could not decide. A chart of one axis is drawn as a line.
 
     Parameters
     ----------
@@ -78,7 +78,9 @@ def stability_figure(
     figure, ax = one_panel(3.4)
     chart = chart.sortby([x, y])
     growth, unit = _growth(chart)
-    undecided = (chart["verdict"] == 0).transpose(y, x).to_numpy()
+    verdict = chart["verdict"].transpose(y, x).to_numpy()
+    undecided = verdict == 0
+    neutral = verdict == 2
     xs = chart[x].to_numpy()
     ys = chart[y].to_numpy()
     values = growth.transpose(y, x).to_numpy()
@@ -88,6 +90,7 @@ def stability_figure(
     bar.ax.tick_params(labelsize=8.5)
     bar.outline.set_linewidth(0.5)
     words = "hatched: unstable" + undecided.any().item() * "; dotted: undecided"
+    words += neutral.any().item() * "; circles: neutral, proven on the unit circle"
     if "cell_verdict" in chart:
         words += f"; {100.0 * chart.attrs['proven_share']:.2f} % of the area proven, red dots: not proven"
     # Not above the axes: the names of tongues stand there.
@@ -97,14 +100,17 @@ def stability_figure(
     )
     ax.grid(False)
     if xs.size > 1 and ys.size > 1:
-        # An undecided node counts as far below 0 as its neighbours are above: the edge lies between.
-        excess = np.where(undecided, 0.0, np.maximum(values, 0.0))
-        decided = np.where(undecided, -1e-9 - maximum_filter(excess, size=3), values)
+        # A node with growth 0 counts as far below 0 as its neighbours are above: the edge lies between.
+        none = undecided | neutral
+        excess = np.where(none, 0.0, np.maximum(values, 0.0))
+        decided = np.where(none, -1e-9 - maximum_filter(excess, size=3), values)
         if (decided > 0.0).any():
             _hatch(ax, xs, ys, decided, [0.0, np.inf], UNSTABLE, "////", RED)
             ax.contour(xs, ys, decided, levels=[0.0], colors=[BLACK], linewidths=1.0)
         if undecided.any():
             _hatch(ax, xs, ys, undecided.astype(float), [0.5, 1.5], "none", "...", GREY)
+        if neutral.any():
+            _hatch(ax, xs, ys, neutral.astype(float), [0.5, 1.5], "none", "o", GREY)
         _mark_thin(ax, chart, x, y)
     if "cell_verdict" in chart:
         i, j = np.nonzero(chart["cell_verdict"].transpose(f"{x}_cell", f"{y}_cell").to_numpy() == 0)

@@ -21,6 +21,7 @@ STATES = {
     "ok": "good",
     "agrees": "good",
     "stable": "good",
+    "neutral": "good",
     "warning": "fair",
     "differs": "fair",
     "undecided": "fair",

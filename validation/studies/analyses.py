@@ -21,7 +21,7 @@ from lumped.model.steady_state import steady_state
 AnalysisName = Literal["geometry", "lumped", "multibody", "floquet"]
 Values = dict[str, float]
 Labels = Mapping[str, tuple[str, str]]
-_VERDICT = {"stable": 1.0, "undecided": 0.0, "unstable": -1.0}
+_VERDICT = {"neutral": 2.0, "stable": 1.0, "undecided": 0.0, "unstable": -1.0}
 
 
 class Settings(Section):
@@ -109,7 +109,7 @@ _LUMPED: Labels = {
 _FLOQUET: Labels = {
     "spectral_radius": ("1", "largest modulus of the multipliers"),
     "spectral_radius_error": ("1", "bound on the error of the largest modulus"),
-    "verdict": ("1", "1 stable, 0 undecided within the error, -1 unstable"),
+    "verdict": ("1", "2 neutral, 1 stable, 0 undecided within the error, -1 unstable"),
     "liouville_residual": ("1", "mismatch of the determinant with Liouville's formula"),
 }
 

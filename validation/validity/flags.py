@@ -278,15 +278,20 @@ def solution_error(motion: xr.Dataset) -> Flag:
 
 
 def stability(multipliers: GearPairMultipliers) -> Flag:
-    """Check that the periodic motion is stable: all Floquet multipliers are inside the unit circle."""
+    """Check that disturbances of the periodic motion die out: all multipliers are inside the unit circle."""
     radius = multipliers.spectral_radius
     error = multipliers.error
-    states: dict[str, State] = {"stable": "ok", "undecided": "warning", "unstable": "violated"}
+    states: dict[str, State] = {
+        "stable": "ok",
+        "neutral": "warning",  # bounded, but no disturbance dies out
+        "undecided": "warning",
+        "unstable": "violated",
+    }
     state = states[multipliers.verdict]
     return flag(
         "stability",
         state,
         radius,
-        f"{multipliers.verdict}: largest multiplier {radius:.6f}, error bound {error:.1e}; the rigid "
+        f"{multipliers.verdict_words}: largest multiplier {radius:.6f}, error bound {error:.1e}; the rigid "
         "rotation is taken out, not tolerated",
     )

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from floquet.rank_one.kernels.simd import (
+from floquet.engine.kernels.simd import (
     LANES,
     aligned_matrices,
     aligned_rows,

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from floquet.rank_one.kernels.simd import (
+from floquet.engine.kernels.simd import (
     LANES,
     aligned_empty,
     aligned_matrices,

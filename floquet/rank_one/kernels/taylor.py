@@ -15,6 +15,7 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
+from floquet.engine.kernels.simd import LANES, aligned_empty, aligned_rows, load, plus, scaled, store, zero
 from floquet.rank_one.kernels.gains import (
     ConstantPart,
     Limits,
@@ -43,7 +44,6 @@ from floquet.rank_one.kernels.product import (
     product_workspace,
     steps_for,
 )
-from floquet.rank_one.kernels.simd import LANES, aligned_empty, aligned_rows, load, plus, scaled, store, zero
 from lumped.compiler import compiled, inlined
 from lumped.typing import FloatArray
 

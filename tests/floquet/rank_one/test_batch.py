@@ -16,9 +16,9 @@ from floquet import (
     scan,
     stability_chart,
 )
+from floquet.engine.many_multipliers import multipliers_of, quick_multipliers
 from floquet.gear.axes import vary
 from floquet.rank_one import batch
-from floquet.rank_one.batch import _quick, multipliers_of
 from floquet.rank_one.system import Gains
 from lumped import load_gear_pair
 from lumped.errors import NumericalError, ParameterError
@@ -100,7 +100,7 @@ def test_eigenvalue_kernel_in_awkward_cases(kind: str) -> None:
         "double": np.diag([0.5, 0.5, 0.1]), "diagonal": np.diag([3.0, 2.0, 1.0]), "zero": np.zeros((3, 3)),
         "rotation": np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]),
     }[kind]  # fmt: skip
-    values, _, safe = _quick(block[None], np.array([1e-12]))
+    values, _, safe = quick_multipliers(block[None], np.array([1e-12]))
     exact = np.linalg.eigvals(block)
     assert np.abs(np.sort_complex(values[0]) - np.sort_complex(exact)).max() < 1e-7  # sqrt(eps) if defective
     assert bool(safe[0]) == (kind in ("diagonal", "rotation"))  # the others go to the careful bound
@@ -111,8 +111,7 @@ def test_radii_without_bounds_are_those_with_them() -> None:
     system = gear_block(load_gear_pair("nasa_28_28"))
     periods = system.period * np.geomspace(0.02, 30.0, 80)
     flow = fast_monodromies(system, periods, tolerance=1e-11)
-    _, _, trusted = _quick(flow.matrices, flow.errors)
-    assert np.unique(trusted).size == 2
+    assert np.unique(quick_multipliers(flow.matrices, flow.errors).safe).size == 2
     expected = np.abs(fast_multipliers(system, periods, tolerance=1e-11).multipliers).max(axis=1)
     radii = batch.spectral_radii(system, periods, 1.0, tolerance=1e-11)
     np.testing.assert_allclose(radii, expected, rtol=1e-10)

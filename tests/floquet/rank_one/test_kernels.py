@@ -11,11 +11,11 @@ pytest.importorskip("flint", reason="needs python-flint (extra: test)")
 from flint import arb_mat
 
 from floquet import RankOneSystem, fast_monodromies
-from floquet.rank_one.batch import _quick
-from floquet.rank_one.kernels.eigenvalue_bounds import _gershgorin, _join
+from floquet.engine.kernels.eigenvalue_bounds import _gershgorin, _join
+from floquet.engine.kernels.simd import LANES
+from floquet.engine.many_multipliers import quick_multipliers
 from floquet.rank_one.kernels.gains import MAX_TERMS, enough_terms, table_of_radii
 from floquet.rank_one.kernels.product import Steps, carry, divide, product_workspace
-from floquet.rank_one.kernels.simd import LANES
 from floquet.rank_one.system import Gains
 from tests.evidence.floquet.extended import state_matrix
 from tests.floquet.engine.judge.balls import worst_ratio
@@ -109,7 +109,7 @@ def test_a_break_that_is_off_enters_the_bound() -> None:
 
 def spectrum(M: np.ndarray) -> tuple[np.ndarray, np.ndarray, bool]:
     """Eigenvalues, radii of their disks, and whether these are safe."""
-    return tuple(part[0] for part in _quick(M[None], np.zeros(1)))
+    return tuple(part[0] for part in quick_multipliers(M[None], np.zeros(1)))
 
 
 @pytest.mark.parametrize("n", [3, 4, 6])
@@ -149,7 +149,7 @@ def test_nearly_defective_eigenvalues_are_left_to_the_careful_bound() -> None:
 
 def ratios(M: np.ndarray, delta: float) -> tuple[float, float, bool]:
     """Largest error over the bound and least one that is called safe; whether disks overlap."""
-    values, radii, safe = (part[0] for part in _quick(M[None], np.array([delta])))
+    values, radii, safe = (part[0] for part in quick_multipliers(M[None], np.array([delta])))
     if not safe:
         return 0.0, False, False
     error_ratios = [worst_ratio(values, radii, disks(balls(M) + balls(E)))[0] for E in worst_errors(M, delta)]
@@ -207,7 +207,9 @@ def test_disks_that_hang_together_are_widened_around_all_of_them() -> None:
     assert (radii[:3] >= chain.max(axis=1)).all()
     assert (radii[apart] == radii_before[apart]).all()
     # Row sums of three entries of 6e-4 overlap over a gap of 1e-3; the third disk is scaled by 2 6e-4/0.8.
-    values, radii, safe = (part[0] for part in _quick(np.diag([0.5, 0.501, -0.3])[None], np.array([6e-4])))
+    values, radii, safe = (
+        part[0] for part in quick_multipliers(np.diag([0.5, 0.501, -0.3])[None], np.array([6e-4]))
+    )
     assert safe
     order = np.argsort(-values.real)
     assert radii[order] == pytest.approx([2.8e-3, 2.8e-3, 6e-4 + 1.5e-3 * 1.2e-3], rel=1e-5)

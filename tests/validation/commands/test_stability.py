@@ -48,6 +48,18 @@ def test_every_axis_makes_a_chart_over_speed(tmp_path, axis):
     assert not drawn or picture.read_bytes().startswith(b"\x89PNG")
 
 
+def test_a_pair_without_damping_is_neutral_and_accepted():
+    bearings = [f"bearings.{g}.{d}_damping_ratio" for g in ("pinion", "gear") for d in ("loa", "oloa")]
+    undamped = [word for name in ("mesh.damping_ratio", *bearings) for word in ("--set", f"{name}=0")]
+    contact = ("--set", "mesh.contact=prescribed")
+    result = run("--law", "none", *undamped, *contact)
+    assert result.exit_code == 0, result.stdout + result.stderr
+    assert "stable (neutral): on the unit circle, proven" in result.stdout
+    result = run("--law", "coulomb", *undamped, *contact)
+    assert result.exit_code == 1
+    assert "neutral" not in result.stdout
+
+
 def test_chart_and_traced_boundaries_are_in_one_file(tmp_path):
     path = tmp_path / "chart.nc"
     picture = tmp_path / "chart.pdf"

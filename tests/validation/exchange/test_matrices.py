@@ -128,6 +128,35 @@ def test_the_command_prints_bounds_and_writes_a_chart(tmp_path):
         assert chart["spectral_radius"].shape == (3, 2)
 
 
+def test_the_command_accepts_neutral_systems_and_no_others_without_damping(tmp_path):
+    """Two oscillators, coupled by cos: neutral with symmetric matrices at 4 Hz, unstable at a sum of frequencies."""
+    matrices = {
+        "M": np.eye(2),
+        "K": np.diag([100.0, 300.0]),
+        "K_cos_1": 20.0 * np.ones((2, 2)),
+        "period": 0.25,
+    }
+    total = (10.0 + np.sqrt(300.0)) / (2.0 * np.pi)
+    skew = np.array([[0.0, 3.0], [-3.0, 0.0]])
+    one_sided = 20.0 * np.ones((2, 2)) + np.diag([1e-12], k=1)
+    for change, verdict, words, code in (
+        ({}, "neutral", "stable (neutral): on the unit circle, proven", 0),
+        ({"G": skew}, "neutral", "stable (neutral)", 0),
+        ({"period": 1.0 / total}, "unstable", "unstable", 1),
+        ({"K_cos_1": one_sided}, "undecided", "undecided: largest", 1),
+        ({"C": 0.5 * np.eye(2)}, "stable", "stable: largest", 0),
+    ):
+        np.savez(tmp_path / "rotor.npz", **matrices | change)
+        result = run("floquet", tmp_path / "rotor.npz")
+        assert (result.exit_code, words in " ".join(result.stdout.split())) == (code, True)
+        result = run("floquet", tmp_path / "rotor.npz", "--json")
+        assert (json.loads(result.stdout)["verdict"], result.exit_code) == (verdict, code)
+    np.savez(tmp_path / "rotor.npz", **matrices)
+    chart = run("floquet", tmp_path / "rotor.npz", "--axis", "frequency=4:8:5", "--axis", "damping=0:1:2")
+    assert "10 points, 0 stable, " in chart.stdout
+    assert " stable (neutral), 0 undecided, " in chart.stdout
+
+
 @pytest.mark.parametrize(("arguments", "word"), [
     (["none.npz"], "a file that exists"),
     (["text.npz"], "a .npz of arrays"),

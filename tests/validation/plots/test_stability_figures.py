@@ -106,6 +106,25 @@ def test_what_is_undecided_is_dotted_and_not_hatched() -> None:
     assert line.get_lines()[1].get_xdata().tolist() == [2e3]
 
 
+def test_what_is_neutral_has_circles_and_no_edge_but_that_of_unstable_nodes() -> None:
+    """Its radius is 1 to rounding, above or below: that is no edge."""
+    radius = np.array([[1.0 + 1e-13, 1.0 - 1e-13, 1.0 + 1e-13], [1.0 + 1e-13] * 3, [1.1, 1.1, 1.1]])
+    chart = over_speed_and_damping(np.array([1e3, 2e3, 3e3]), np.array([0.0, 0.1, 0.2]), radius)
+    chart["verdict"] = chart["verdict"].where(radius > 1.01, 2)
+    ax = stability_figure(chart).axes[0]
+    spans = {
+        c.hatches[0]: np.concatenate([p.vertices for p in c.get_paths()])[:, 0]
+        for c in ax.collections
+        if isinstance(c, QuadContourSet) and c.filled
+    }
+    assert (spans["o"].min(), spans["o"].max()) == (1000.0, 2500.0)
+    assert spans["////"].min() == pytest.approx(2500.0, abs=1.0)
+    assert "..." not in spans
+    words = ax.figure.get_supxlabel()
+    assert "circles: neutral" in words
+    assert "dotted" not in words
+
+
 def test_uneven_axes_and_falling_ones_are_drawn_at_their_values() -> None:
     x = np.array([3000.0, 1000.0, 1100.0])
     y = np.array([0.01, 0.05, 0.0])

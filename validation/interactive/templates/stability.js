@@ -1,5 +1,5 @@
 // Stability chart: heat map over speed and damping at one value of the third parameter, and its cut.
-const WORDS = { 1: "stable", 0: "undecided", "-1": "unstable" };
+const WORDS = { 2: "stable (neutral)", 1: "stable", 0: "undecided", "-1": "unstable" };
 // Cividis (Nuñez, Anderton and Renslow 2018), readable with every common colour vision and in grey; its light
 // end is kept for what is unstable, so that the step at 1 is a step in lightness.
 const STABLE = ["#00224e", "#123570", "#3b496c", "#575d6d", "#707173", "#8a8678", "#a59c74"];
@@ -38,7 +38,7 @@ function stabilityTraces(chart, colours) {
   verdict.forEach((row, i) => row.forEach((v, j) => {
     if (v !== 1) { dots.x.push(speed[j]); dots.y.push(damping[i]); }
   }));
-  const bad = speed.map((_, j) => j).filter((j) => verdict[at.damping][j] !== 1);
+  const bad = speed.map((_, j) => j).filter((j) => verdict[at.damping][j] < 1);
   const onCut = { yaxis: "y2", type: "scatter" };
   return [
     {

@@ -22,7 +22,7 @@ def write(results: Results) -> Content:
     share = float(np.mean(results.stability_line < 0))
     some = "no speed" if share == 0.0 else f"{100 * share:.2g} % of the speeds"
     result = (
-        f"At the operating point the linear motion is {multipliers.verdict}; at the given damping "
+        f"At the operating point the linear motion is {multipliers.verdict_words}; at the given damping "
         f"{some} from {low} to {high} rpm {'is' if some == 'no speed' else 'are'} unstable"
         f"{results.on_springs}."
     )
@@ -60,13 +60,12 @@ def _stability_table(results: Results) -> Table:
     chart = results.chart
     multipliers = results.multipliers
     radius = multipliers.spectral_radius
-    error = f"error at most {multipliers.error:.1e}: {multipliers.verdict}"
-    cycles = np.log(0.5) / np.log(radius)
-    numbers = [
-        NamedNumber("largest Floquet multiplier", radius, "1", error),
-        NamedNumber("a disturbance is halved in", cycles, "1", "mesh cycles"),
-        NamedNumber("mesh damping ratio", results.pair.mesh.damping_ratio, "1"),
-    ]
+    error = f"error at most {multipliers.error:.1e}: {multipliers.verdict_words}"
+    numbers = [NamedNumber("largest Floquet multiplier", radius, "1", error)]
+    if not multipliers.neutral:  # else no disturbance dies out
+        cycles = np.log(0.5) / np.log(radius)
+        numbers.append(NamedNumber("a disturbance is halved in", cycles, "1", "mesh cycles"))
+    numbers.append(NamedNumber("mesh damping ratio", results.pair.mesh.damping_ratio, "1"))
     edge = chart.attrs["nearest_edge_damping_ratio"]
     if not math.isnan(edge):
         numbers.append(NamedNumber("stability changes at", edge, "1", "mesh damping ratio, this speed"))

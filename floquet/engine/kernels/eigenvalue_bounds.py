@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from floquet.rank_one.kernels.eigenvalues import eigenvalues
+from floquet.engine.kernels.eigenvalues import eigenvalues
 from lumped.compiler import compiled, inlined
 from lumped.typing import ComplexArray, FloatArray
 

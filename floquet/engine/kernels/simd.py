@@ -108,6 +108,17 @@ def plus(typing: Any, factor: Any, x: Any, total: Any) -> Any:
 
 
 @intrinsic
+def plus_product(typing: Any, x: Any, y: Any, total: Any) -> Any:
+    """plus_product(x, y, total): x y + total, lane by lane."""
+
+    def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        product = builder.fmul(args[0], args[1], flags=_CONTRACT)
+        return builder.fadd(product, args[2], flags=_CONTRACT)
+
+    return _vector(_vector, _vector, _vector), code
+
+
+@intrinsic
 def plus_square(typing: Any, x: Any, total: Any) -> Any:
     """plus_square(x, total): x x + total, lane by lane."""
 
