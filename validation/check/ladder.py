@@ -12,21 +12,23 @@ import numpy as np
 
 from validation.check.explanations.cause import Variant
 from validation.check.explanations.registry import EXPLANATIONS
-from validation.check.mesh_frequency import SAME
 from validation.check.motion_curves import MotionCurves
 from validation.check.problem import Problem
-from validation.check.search import OF_FREQUENCY, BudgetSpentError, Motions, Path, Search, Step, without_step
+from validation.check.search import BudgetSpentError, Motions, Path, Search, Step, without_step
 
 #: Paths that are followed at the same time, and most steps of a path.
 _BEAM = 3
 _MOST_STEPS = 6
 #: Share of the limit at which the search stops.
 _ENOUGH = 0.2
-#: Shares of the misfit by which a step must lower it: above the limit; below the limit, by a fixed value, and
-#: by a free parameter.
+#: Shares of the misfit by which a step must lower it: the first step; a later step that does not reach the limit;
+#: below the limit, by a fixed value, and by a free parameter.
 _LEAST_GAIN = 0.1
+_GAIN_OF_LATER = 0.3
 _GAIN_OF_FIXED = 0.5
 _GAIN_OF_FREE = 0.75
+#: A start from another mesh frequency is followed up to this many times the best misfit.
+_FAR = 3.0
 #: Two motions are the same where they differ by this share of the misfit.
 _SAME_MOTION = 0.05
 #: Rounds in which steps are exchanged, and the share of the score that an exchange must reach.
@@ -147,22 +149,26 @@ def _starts(search: Search, floor: float) -> list[Path]:
     start = search.start()
     variant = Variant(problem.pair)
     paths = []
-    if abs(problem.frequency.factor - 1.0) > SAME:
-        for name in OF_FREQUENCY:
-            cause = EXPLANATIONS[name]
+    if search.other_frequency:
+        for cause in EXPLANATIONS.values():
+            if not search.of_frequency(cause):
+                continue
             for choice in cause.choices(problem, variant):
                 step = Step(cause, choice)
                 trial = search.trial((step,))
                 if trial is not None:
                     paths.append(Path((step,), trial))
                     search.archive[paths[-1].keys] = paths[-1]
-    return sorted(paths, key=lambda path: path.score(floor)) or [start]
+    paths.sort(key=lambda path: path.score(floor))
+    return [path for path in paths if path.score(floor) < _FAR * paths[0].score(floor)] or [start]
 
 
 def _accepted(path: Path, before: Path, limit: float, floor: float) -> bool:
     """Whether a path lowers the misfit of the path before by enough."""
+    if path.vague and path.trial.value > limit:
+        return False
     gain = before.trial.value - path.trial.value
-    share = _LEAST_GAIN
+    share = _LEAST_GAIN if len(before.steps) == 0 or path.trial.value <= limit else _GAIN_OF_LATER
     if before.trial.value <= limit:
         share = _GAIN_OF_FIXED if path.free <= before.free else _GAIN_OF_FREE
     return gain > max(share * before.trial.value, floor)
@@ -186,9 +192,11 @@ def _exchanged(search: Search, best: Path, limit: float, floor: float) -> Path:
         better = best
         for number in range(len(best.steps)):
             parent = _refitted(search, without_step(best, number))
-            if parent is None or best.steps[number].cause.name in OF_FREQUENCY:
+            if parent is None or search.of_frequency(best.steps[number].cause):
                 continue
             for path in search.expand(parent):
+                if path.vague and path.trial.value > limit:
+                    continue
                 if path.score(floor) < _BETTER * better.score(floor):
                     better = path
         if better is best:
@@ -202,7 +210,7 @@ def _pruned(search: Search, best: Path, limit: float, floor: float) -> Path:
     number = 0
     while number < len(best.steps) and len(best.steps) > 1:
         shorter = _refitted(search, without_step(best, number))
-        kept_by_frequency = best.steps[number].cause.name in OF_FREQUENCY
+        kept_by_frequency = search.of_frequency(best.steps[number].cause)
         if shorter is None or kept_by_frequency or _accepted(best, shorter, limit, floor):
             number += 1
         else:
@@ -229,7 +237,7 @@ def _explanations(search: Search, best: Path, floor: float) -> Iterator[Explanat
     before: tuple[Step, ...] = ()
     while rest:
         values = [_misfit_of(search, (*before, step)) for step in rest]
-        first = [step.cause.name in OF_FREQUENCY for step in rest]
+        first = [search.of_frequency(step.cause) for step in rest]
         number = int(np.argmax(first)) if any(first) else int(np.argmin(values))
         step = rest.pop(number)
         before = (*before, step)

@@ -37,6 +37,13 @@ _REPEATS_BETTER = 0.25
 #: A mistaken speed or time must carry this share of the variation, and this many times as much as the pair's.
 _MOST = 0.5
 _TIMES = 4.0
+#: Share of the variation that the right mesh frequency carries, and of the rest at the frequency of the pair that
+#: remains there; less than the last share at the frequency of the pair is little.
+_ALL = 0.9
+_REST = 0.1
+_LITTLE = 0.5
+#: Another mesh frequency of a model is searched within this share.
+_WIDE = 0.2
 #: Another speed of a record is searched within this share of the stated speed.
 _FAR = 0.05
 #: Fewest mesh cycles that tell one frequency from another.
@@ -99,6 +106,7 @@ def mesh_frequency(curves: Curves, pair: GearPair, *, mistakes: bool = True) -> 
     trials = mistaken_factors(pair) if mistakes else {}
     near = carried.refined(1.0)
     at_pair = carried(near, carried.reach)
+    at_best = at_pair
     best = Frequency(near, "")
     for cause, factor in trials.items():
         # The last of the first orders has at least two samples in a wave.
@@ -107,9 +115,23 @@ def mesh_frequency(curves: Curves, pair: GearPair, *, mistakes: bool = True) -> 
         trial = carried.refined(factor)
         most = carried(trial, carried.reach)
         # Multiples of the true frequency carry a part of the orders, fractions carry all of them.
-        if most > _MOST and most > _TIMES * max(at_pair, 1e-3) and not _is_multiple(trial, best):
-            best, at_pair = Frequency(trial, cause), most / _TIMES
+        more = most > _MOST and most > _TIMES * max(at_pair, 1e-3)
+        # Another frequency with common orders carries much of the motion too, the right one nearly all.
+        nearly_all = most > _ALL and 1.0 - most < _REST * (1.0 - at_best)
+        if (more or nearly_all) and not _is_multiple(trial, best):
+            best, at_pair, at_best = Frequency(trial, cause), most / _TIMES, most
+    if not best.cause and mistakes and at_best < _LITTLE:
+        return _elsewhere(carried, best)
     return best
+
+
+def _elsewhere(carried: _Carried, best: Frequency) -> Frequency:
+    """The mesh frequency within a fifth of that of the pair that carries nearly all of the motion, else ``best``."""
+    length = min(_SHORT, carried.reach)
+    rough, _ = carried.strongest(1.0, _WIDE, length)
+    factor = carried.refined(rough)
+    carries_all = carried(factor, carried.reach) > _ALL
+    return Frequency(factor, "the speed or the sampling rate is another one") if carries_all else best
 
 
 def shown_speed(curves: Curves, pair: GearPair) -> float | None:

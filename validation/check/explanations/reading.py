@@ -18,7 +18,7 @@ from lumped.errors import NumericalError
 from lumped.model.periodic_system import LTVSystem, supports_of
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
-from validation.check.curve_orders import ChannelOrders, orders_of_channel
+from validation.check.curve_orders import ChannelOrders, orders_of_channel, without_ramp
 from validation.check.curves import Channel, Curves
 from validation.check.problem import Problem
 from validation.signals.complex_orders import ComplexOrders
@@ -114,6 +114,8 @@ def without_free_vibrations(problem: Problem) -> tuple[ChannelOrders, ...]:
             result.append(one)
             continue
         values = one.channel.values[used]
+        if one.channel.kind.is_rotation:
+            values = without_ramp(problem.cycles, values)
         angle = 2.0 * np.pi * np.multiply.outer(problem.cycles, one.orders.orders)
         steady = np.hstack([np.ones((values.size, 1)), np.cos(angle), -np.sin(angle)])
         fit = np.linalg.lstsq(np.hstack([steady, waves]), values, rcond=1e-10)[0]
@@ -124,7 +126,7 @@ def without_free_vibrations(problem: Problem) -> tuple[ChannelOrders, ...]:
 
 
 def _free_vibrations(pair: GearPair, cycles: FloatArray) -> FloatArray:
-    """Decaying cosines and sines (k, 2 modes) of the mean system over the mesh cycles of the samples."""
+    """Decaying cosines and sines (k, 6 modes) of the mean system over the mesh cycles of the samples."""
     system = LTVSystem.of(pair.healthy, "elastic", supports=supports_of(pair, None))
     times = (np.arange(64) + 0.5) / 64 * system.period
     mean = system.matrices(times).mean(axis=0)
@@ -132,7 +134,9 @@ def _free_vibrations(pair: GearPair, cycles: FloatArray) -> FloatArray:
     rates = rates[(rates.imag > 0.0) & (rates.real < 0.0)]
     if not rates.size:
         raise NumericalError("The pair has no free vibration that decays.")
-    waves = np.exp(np.multiply.outer(cycles - cycles[0], rates))
+    # The mesh stiffness varies: a free vibration has its own frequency and those a mesh frequency apart.
+    every = np.concatenate([rates - 2j * np.pi, rates, rates + 2j * np.pi])
+    waves = np.exp(np.multiply.outer(cycles - cycles[0], every))
     return np.asarray(np.hstack([waves.real, waves.imag]), dtype=np.float64)
 
 
