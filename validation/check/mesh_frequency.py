@@ -37,10 +37,11 @@ _REPEATS_BETTER = 0.25
 #: A mistaken speed or time must carry this share of the variation, and this many times as much as the pair's.
 _MOST = 0.5
 _TIMES = 4.0
-#: Share of the variation that the right mesh frequency carries, and of the rest at the frequency of the pair that
-#: remains there; less than the last share at the frequency of the pair is little.
-_ALL = 0.9
-_REST = 0.1
+#: Change over a mesh cycle, over the variance, of curves that repeat there and not at the frequency of the pair: at
+#: most the first number, and at most the second number times the change at the frequency of the pair.
+_SMALL_CHANGE = 0.05
+_SMALLER = 0.1
+#: The first orders at the frequency of the pair carry little below this share of the variation.
 _LITTLE = 0.5
 #: Another mesh frequency of a model is searched within this share.
 _WIDE = 0.2
@@ -106,7 +107,6 @@ def mesh_frequency(curves: Curves, pair: GearPair, *, mistakes: bool = True) -> 
     trials = mistaken_factors(pair) if mistakes else {}
     near = carried.refined(1.0)
     at_pair = carried(near, carried.reach)
-    at_best = at_pair
     best = Frequency(near, "")
     for cause, factor in trials.items():
         # The last of the first orders has at least two samples in a wave.
@@ -116,11 +116,10 @@ def mesh_frequency(curves: Curves, pair: GearPair, *, mistakes: bool = True) -> 
         most = carried(trial, carried.reach)
         # Multiples of the true frequency carry a part of the orders, fractions carry all of them.
         more = most > _MOST and most > _TIMES * max(at_pair, 1e-3)
-        # Another frequency with common orders carries much of the motion too, the right one nearly all.
-        nearly_all = most > _ALL and 1.0 - most < _REST * (1.0 - at_best)
-        if (more or nearly_all) and not _is_multiple(trial, best):
-            best, at_pair, at_best = Frequency(trial, cause), most / _TIMES, most
-    if not best.cause and mistakes and at_best < _LITTLE:
+        # A frequency with orders in common carries much of the motion too, but the motion does not repeat.
+        if (more or (most > _MOST and carried.repeats(trial, best.factor))) and not _is_multiple(trial, best):
+            best, at_pair = Frequency(trial, cause), most / _TIMES
+    if not best.cause and mistakes and at_pair < _LITTLE:
         return _elsewhere(carried, best)
     return best
 
@@ -130,8 +129,9 @@ def _elsewhere(carried: _Carried, best: Frequency) -> Frequency:
     length = min(_SHORT, carried.reach)
     rough, _ = carried.strongest(1.0, _WIDE, length)
     factor = carried.refined(rough)
-    carries_all = carried(factor, carried.reach) > _ALL
-    return Frequency(factor, "the speed or the sampling rate is another one") if carries_all else best
+    if carried(factor, carried.reach) > _MOST and carried.repeats(factor, best.factor):
+        return Frequency(factor, "the speed or the sampling rate is another one")
+    return best
 
 
 def shown_speed(curves: Curves, pair: GearPair) -> float | None:
@@ -218,19 +218,25 @@ class _Carried:
         In few cycles the first orders also gain by a wrong frequency that takes a part of higher orders.
         """
 
-        def change(trial: float) -> float:
-            first = self.cycles <= self.cycles[-1] - 1.0 / trial
-            later = self.cycles[first] + 1.0 / trial
-            differences = [np.interp(later, self.cycles, row) - row[first] for row in self.values]
-            power = np.maximum(np.mean(self.values**2, axis=1), 1e-300)
-            return float(np.mean([np.mean(row**2) for row in differences] / power))
-
-        at_factor = change(factor)
+        at_factor = self.change(factor)
         if at_factor < _REPEATS:
             return factor
         ends = (factor * (1.0 - SAME), factor * (1.0 + SAME))
-        fine = minimize_scalar(change, bounds=ends, method="bounded", options={"xatol": 1e-6 * factor})
+        fine = minimize_scalar(self.change, bounds=ends, method="bounded", options={"xatol": 1e-6 * factor})
         return float(fine.x) if float(fine.fun) < _REPEATS_BETTER * at_factor else factor
+
+    def change(self, factor: float) -> float:
+        """Return the mean square of the change over one mesh cycle, over the variance."""
+        first = self.cycles <= self.cycles[-1] - 1.0 / factor
+        later = self.cycles[first] + 1.0 / factor
+        differences = [np.interp(later, self.cycles, row) - row[first] for row in self.values]
+        power = np.maximum(np.mean(self.values**2, axis=1), 1e-300)
+        return float(np.mean([np.mean(row**2) for row in differences] / power))
+
+    def repeats(self, factor: float, other: float) -> bool:
+        """Return whether the curves repeat at a factor, and do not at another one."""
+        change = self.change(factor)
+        return change < min(_SMALL_CHANGE, _SMALLER * self.change(other))
 
     def strongest(self, about: float, width: float, length: float) -> tuple[float, float]:
         """Return the factor with the largest share, within ``about`` +- ``width``; then the step."""

@@ -126,7 +126,7 @@ def without_free_vibrations(problem: Problem) -> tuple[ChannelOrders, ...]:
 
 
 def _free_vibrations(pair: GearPair, cycles: FloatArray) -> FloatArray:
-    """Decaying cosines and sines (k, 6 modes) of the mean system over the mesh cycles of the samples."""
+    """Decaying cosines and sines (k, 2 modes) of the mean system over the mesh cycles of the samples."""
     system = LTVSystem.of(pair.healthy, "elastic", supports=supports_of(pair, None))
     times = (np.arange(64) + 0.5) / 64 * system.period
     mean = system.matrices(times).mean(axis=0)
@@ -134,9 +134,7 @@ def _free_vibrations(pair: GearPair, cycles: FloatArray) -> FloatArray:
     rates = rates[(rates.imag > 0.0) & (rates.real < 0.0)]
     if not rates.size:
         raise NumericalError("The pair has no free vibration that decays.")
-    # The mesh stiffness varies: a free vibration has its own frequency and those a mesh frequency apart.
-    every = np.concatenate([rates - 2j * np.pi, rates, rates + 2j * np.pi])
-    waves = np.exp(np.multiply.outer(cycles - cycles[0], every))
+    waves = np.exp(np.multiply.outer(cycles - cycles[0], rates))
     return np.asarray(np.hstack([waves.real, waves.imag]), dtype=np.float64)
 
 
