@@ -6,11 +6,11 @@ Sources: docs/how_to/check_your_model.md, "Explanations".
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from validation.check.explanations.cause import Variant
+from validation.check.explanations.cause import Cause, Kind, Variant
 from validation.check.explanations.registry import EXPLANATIONS
 from validation.check.motion_curves import MotionCurves
 from validation.check.problem import Problem
@@ -18,7 +18,7 @@ from validation.check.search import BudgetSpentError, Motions, Path, Search, Ste
 
 #: Paths that are followed at the same time, and most steps of a path.
 _BEAM = 3
-_MOST_STEPS = 6
+_MOST_STEPS = 4
 #: Share of the limit at which the search stops.
 _ENOUGH = 0.2
 #: Shares of the misfit by which a step must lower it: the first step; a later step that does not reach the limit;
@@ -29,11 +29,17 @@ _GAIN_OF_FIXED = 0.5
 _GAIN_OF_FREE = 0.75
 #: A start from another mesh frequency is followed up to this many times the best misfit.
 _FAR = 3.0
+#: A path of the beam is followed up to this many times the score of the best one.
+_NEAR_BEST = 1.6
+#: A single step that leaves more than this share of the misfit says little.
+_LITTLE = 0.5
 #: Two motions are the same where they differ by this share of the misfit.
 _SAME_MOTION = 0.05
 #: Rounds in which steps are exchanged, and the share of the score that an exchange must reach.
-_EXCHANGES = 2
+_EXCHANGES = 1
 _BETTER = 0.9
+#: The cause that is told with the change of stiffness, mass or inertia that the dampers do not follow.
+_DAMPERS_STAY = "dampers stay"
 #: Alternatives are named up to this many times the misfit.
 _WITHIN = 2.0
 
@@ -126,13 +132,15 @@ def _best_path(search: Search, limit: float, floor: float) -> Path:
     enough = max(limit * _ENOUGH, floor)
     while best.trial.value > enough and len(best.steps) < _MOST_STEPS and not search.spent:
         candidates: list[Path] = []
-        for path in beam:
+        near = [path for path in beam if path.score(floor) < _NEAR_BEST * beam[0].score(floor)]
+        for path in near:
             candidates += [one for one in search.expand(path) if _accepted(one, path, limit, floor)]
             if candidates and min(one.trial.value for one in candidates) <= enough:
                 break
         beam = _distinct(candidates, floor)
         if not beam or not _accepted(beam[0], best, limit, floor):
-            if best.trial.value <= limit or len(best.steps) > 1:
+            little = best.trial.value > _LITTLE * search.problem.misfit.value
+            if best.trial.value <= limit or len(best.steps) > 1 or not little:
                 break
             # No single step says enough: a wrong sign may hide every other cause.
             joint = [one for one in search.with_reading(best) if _accepted(one, best, limit, floor)]
@@ -231,8 +239,10 @@ def _refitted(search: Search, steps: tuple[Step, ...]) -> Path | None:
     return None if trial is None else search.fitted(Path(steps, trial))
 
 
-def _explanations(search: Search, best: Path, floor: float) -> Iterator[Explanation]:
+def _explanations(search: Search, best: Path, floor: float) -> list[Explanation]:
     """Steps of a path, the step that lowers the misfit most first, with their alternatives."""
+    listed: list[Explanation] = []
+    causes: list[Cause] = []
     rest = list(best.steps)
     before: tuple[Step, ...] = ()
     while rest:
@@ -241,13 +251,25 @@ def _explanations(search: Search, best: Path, floor: float) -> Iterator[Explanat
         number = int(np.argmax(first)) if any(first) else int(np.argmin(values))
         step = rest.pop(number)
         before = (*before, step)
-        yield Explanation(
-            name=step.cause.name,
-            factor=step.label,
-            misfit=values[number] if rest else best.trial.value,
-            sentence=step.sentence,
-            alternatives=tuple(_alternatives(search, best, step, floor)),
+        misfit = values[number] if rest else best.trial.value
+        changed = [place for place, cause in enumerate(causes) if cause.kind is Kind.INPUT]
+        if step.cause.name == _DAMPERS_STAY and changed:
+            one = listed[changed[-1]]
+            listed[changed[-1]] = replace(
+                one, misfit=misfit, sentence=f"{one.sentence}, with dampers [N s/m] that stay as they are"
+            )
+            continue
+        listed.append(
+            Explanation(
+                name=step.cause.name,
+                factor=step.label,
+                misfit=misfit,
+                sentence=step.sentence,
+                alternatives=tuple(_alternatives(search, best, step, floor)),
+            )
         )
+        causes.append(step.cause)
+    return listed
 
 
 def _misfit_of(search: Search, steps: tuple[Step, ...]) -> float:

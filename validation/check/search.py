@@ -35,7 +35,7 @@ from validation.check.explanations.physics import Physics, motion_of
 from validation.check.explanations.reading import Reading, read
 from validation.check.explanations.registry import EXPLANATIONS
 from validation.check.mesh_frequency import SAME
-from validation.check.misfit import Misfit
+from validation.check.misfit import ChannelMisfit, Misfit
 from validation.check.motion_curves import MotionCurves
 from validation.check.problem import Problem
 from validation.check.settled import white_noise
@@ -69,6 +69,8 @@ _TRIALS = 14
 _LEAST_CHANGE = 1e-3
 #: A change from cycle to cycle above this share of the motion is no noise but a motion that fades.
 _NOT_SETTLED = 0.01
+#: Readings behind which every other cause is tried: those that leave the smallest misfit.
+_HIDING_READINGS = 6
 #: Readings that can hide every other cause.
 HIDING = ("sign of a channel", "channels swapped", "time reversed")
 
@@ -313,13 +315,17 @@ class Search:
         A wrong sign, or two channels that are swapped, can hide every other cause. The motions are those of
         ``expand``, so that a reading costs little.
         """
-        screened = []
+        screened: list[tuple[float, Path]] = []
         try:
+            readings = []
             for step in list(self._fixed_steps(path)):
                 if step.cause.name in HIDING:
                     trial = self.trial((*path.steps, step))
                     if trial is not None:
-                        screened += self._screened(Path((*path.steps, step), trial))
+                        readings.append(Path((*path.steps, step), trial))
+            readings.sort(key=lambda one: one.trial.value)
+            for one in readings[:_HIDING_READINGS]:
+                screened += self._screened(one)
         except BudgetSpentError:
             pass
         screened.sort(key=lambda one: one[0])
@@ -576,12 +582,20 @@ def _white_noise(problem: Problem) -> float:
 
 def residual_of(misfit: Misfit) -> FloatArray:
     """Return the residual, whose root sum square is the value of the misfit."""
+    groups = [_group(row) for row in misfit.channels]
     parts = []
-    for row in misfit.channels:
+    for row, group in zip(misfit.channels, groups, strict=True):
         difference = (row.channel.orders.values - row.ours.values) / row.scale
         mean = (row.channel.orders.mean - row.ours.mean) / row.static if row.compares_mean else 0.0
-        parts.append(np.concatenate([difference.real, difference.imag, [mean]]))
-    return np.asarray(np.concatenate(parts) / np.sqrt(len(parts)), dtype=np.float64)
+        part = np.concatenate([difference.real, difference.imag, [mean]])
+        parts.append(part / np.sqrt(len(set(groups)) * groups.count(group)))
+    return np.asarray(np.concatenate(parts), dtype=np.float64)
+
+
+def _group(row: ChannelMisfit) -> str:
+    """Channels that count as one: all tooth pairs of a quantity; else the channel alone."""
+    one = row.channel.channel
+    return f"pairs: {one.quantity}" if one.tooth_pair else one.name
 
 
 def _without(residual: FloatArray, taken_up: FloatArray) -> float:
