@@ -5,7 +5,7 @@ Sources: docs/how_to/check_your_model.md, "Explanations".
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,8 +21,8 @@ _BEAM = 3
 _MOST_STEPS = 4
 #: Share of the limit at which the search stops.
 _ENOUGH = 0.2
-#: Shares of the misfit by which a step must lower it: the first step; a later step that does not reach the limit;
-#: below the limit, by a fixed value, and by a free parameter.
+#: Shares of the misfit by which a step must lower it: the first step; a later step that does not reach the
+#: limit; below the limit, by a fixed value, and by a free parameter.
 _LEAST_GAIN = 0.1
 _GAIN_OF_LATER = 0.3
 _GAIN_OF_FIXED = 0.5
@@ -102,7 +102,15 @@ class Ladder:
     complete: bool
 
 
-def climb(problem: Problem, *, limit: float, budget: float, motions: Motions | None = None) -> Ladder:
+def climb(
+    problem: Problem,
+    *,
+    limit: float,
+    budget: float,
+    motions: Motions | None = None,
+    most_motions: int | None = None,
+    causes: Sequence[Cause] | None = None,
+) -> Ladder:
     """Search the explanations of a misfit, with a beam of three paths.
 
     A step is accepted where it lowers the misfit by more than 10 % and by more than the error of the
@@ -115,8 +123,16 @@ def climb(problem: Problem, *, limit: float, budget: float, motions: Motions | N
     limit : misfit below which the curves agree
     budget : processor time of the search [s]
     motions : motions of changed models, which searches of several curves of one pair share; they are added to
+    most_motions : number of motions at which the search ends; None: the budget alone ends it
+    causes : causes that are tried; None: all of the registry, and the delay of each channel
     """
-    search = Search(problem, budget, motions={} if motions is None else motions)
+    search = Search(
+        problem,
+        budget,
+        causes=None if causes is None else tuple(causes),
+        motions={} if motions is None else motions,
+        most_motions=most_motions,
+    )
     floor = search.floor(limit)
     best = _best_path(search, limit, floor)
     best = _exchanged(search, best, limit, floor)

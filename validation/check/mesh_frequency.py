@@ -37,8 +37,8 @@ _REPEATS_BETTER = 0.25
 #: A mistaken speed or time must carry this share of the variation, and this many times as much as the pair's.
 _MOST = 0.5
 _TIMES = 4.0
-#: Change over a mesh cycle, over the variance, of curves that repeat there and not at the frequency of the pair: at
-#: most the first number, and at most the second number times the change at the frequency of the pair.
+#: Change over a mesh cycle, over the variance, of curves that repeat there and not at the frequency of the
+#: pair: at most the first number, and the second number times the change at the frequency of the pair.
 _SMALL_CHANGE = 0.05
 _SMALLER = 0.1
 #: The first orders at the frequency of the pair carry little below this share of the variation.
@@ -125,7 +125,7 @@ def mesh_frequency(curves: Curves, pair: GearPair, *, mistakes: bool = True) -> 
 
 
 def _elsewhere(carried: _Carried, best: Frequency) -> Frequency:
-    """The mesh frequency within a fifth of that of the pair that carries nearly all of the motion, else ``best``."""
+    """The mesh frequency within a fifth of that of the pair at which the curves repeat, else ``best``."""
     length = min(_SHORT, carried.reach)
     rough, _ = carried.strongest(1.0, _WIDE, length)
     factor = carried.refined(rough)
@@ -217,7 +217,6 @@ class _Carried:
 
         In few cycles the first orders also gain by a wrong frequency that takes a part of higher orders.
         """
-
         at_factor = self.change(factor)
         if at_factor < _REPEATS:
             return factor

@@ -183,16 +183,18 @@ class Search:
     ----------
     problem : the curves and our motion
     budget : processor time [s]
-    causes : causes that are tried
+    causes : causes that are tried; None: all of the registry, and the delay of each channel
     motions : motions of changed models; searches of several curves of one pair can share them
+    most_motions : number of motions at which the search ends; None: the budget alone ends it
     runs : number of motions that were computed
     archive : keys of the steps -> best path with these steps
     """
 
     problem: Problem
     budget: float
-    causes: tuple[Cause, ...] = ()
+    causes: tuple[Cause, ...] | None = None
     motions: Motions = field(default_factory=dict)
+    most_motions: int | None = None
     runs: int = 0
     archive: dict[frozenset[tuple[str, str]], Path] = field(default_factory=dict)
     _trials: dict[tuple[tuple[str, str, float], ...], Trial | None] = field(default_factory=dict)
@@ -201,7 +203,9 @@ class Search:
 
     def __post_init__(self) -> None:
         """Set the end of the budget, and the motion that is known."""
-        self.causes = (*EXPLANATIONS.values(), *causes_of_channels(self.problem))
+        if self.causes is None:
+            self.causes = (*EXPLANATIONS.values(), *causes_of_channels(self.problem))
+        self._tried_causes = self.causes
         self._end = time.process_time() + self.budget
         start = Variant(self.problem.pair)
         self.motions[start.pair, start.physics] = self.problem.motion
@@ -247,7 +251,7 @@ class Search:
         """Motion of a variant, computed once."""
         key = pair, physics
         if key not in self.motions:
-            if time.process_time() > self._end:
+            if self.spent:
                 raise BudgetSpentError
             self.runs += 1
             try:
@@ -294,7 +298,8 @@ class Search:
     @property
     def spent(self) -> bool:
         """Whether the budget is spent."""
-        return time.process_time() > self._end
+        enough = self.most_motions is not None and self.runs >= self.most_motions
+        return enough or time.process_time() > self._end
 
     def _with_one_step_more(self, path: Path) -> list[Path]:
         screened = self._screened(path)
@@ -385,7 +390,7 @@ class Search:
         variant = Variant(self.problem.pair)
         for step in path.steps:
             variant = step.of(variant)
-        for cause in self.causes:
+        for cause in self._tried_causes:
             if cause.free and Step(cause, None).key not in path.keys and cause.applies(self.problem, variant):
                 yield cause
 
@@ -406,7 +411,7 @@ class Search:
         for step in path.steps:
             variant = step.of(variant)
         names = {step.cause.name for step in path.steps if step.cause.kind is not Kind.READING}
-        for cause in self.causes:
+        for cause in self._tried_causes:
             if cause.free or cause.name in names or self._of_start(cause):
                 continue
             try:

@@ -1,7 +1,7 @@
 """The registry of explanations by name: readings of the curves, alterations of the equations, inputs.
 
-A further explanation is an entry of ``OF_READING``, ``OF_MODEL``, ``OF_PAIR`` or ``OF_DESIGN``, a row of the table in
-docs/how_to/check_your_model.md and a case in tests/validation/check/test_explanations.py.
+A further explanation is an entry of ``OF_READING``, ``OF_MODEL``, ``OF_PAIR`` or ``OF_DESIGN``, a row of the
+table in docs/how_to/check_your_model.md and a case in tests/validation/check/test_explanations.py.
 """
 
 from __future__ import annotations
