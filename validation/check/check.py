@@ -193,7 +193,7 @@ class Check:
         elif self.failed is Rung.OVER_SPEED and self.over_speed is not None:
             sentences.append(speed_failure(self.over_speed))
         if self.ladder is not None and (self.ladder.steps or self.failed is Rung.MOTION):
-            sentences.append(ladder_words(self.ladder))
+            sentences.append(ladder_words(self.ladder, self.limit))
         return " ".join(sentences)
 
     @cached_property

@@ -14,7 +14,7 @@ import numpy as np
 from lumped.errors import refuse
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
-from validation.check.quantities import PAIR_LABELS, QUANTITIES, Quantity
+from validation.check.quantities import PAIR_LABELS, QUANTITIES, Quantity, quantity_of
 
 #: Kind of the source. The words of a verdict differ: "your model", "the record".
 Role = Literal["model", "measurement"]
@@ -62,7 +62,7 @@ class Channel:
     @property
     def kind(self) -> Quantity:
         """The quantity, with its unit and plain name."""
-        return QUANTITIES[self.quantity]
+        return quantity_of(self.quantity)
 
 
 @dataclass(frozen=True, eq=False)

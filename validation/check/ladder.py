@@ -5,33 +5,41 @@ Sources: docs/how_to/check_your_model.md, "Explanations".
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from validation.check.explanations.cause import Variant
+from validation.check.explanations.cause import Cause, Kind, Variant
 from validation.check.explanations.registry import EXPLANATIONS
-from validation.check.mesh_frequency import SAME
 from validation.check.motion_curves import MotionCurves
 from validation.check.problem import Problem
-from validation.check.search import OF_FREQUENCY, BudgetSpentError, Motions, Path, Search, Step, without_step
+from validation.check.search import BudgetSpentError, Motions, Path, Search, Step, without_step
 
 #: Paths that are followed at the same time, and most steps of a path.
 _BEAM = 3
-_MOST_STEPS = 6
+_MOST_STEPS = 4
 #: Share of the limit at which the search stops.
 _ENOUGH = 0.2
-#: Shares of the misfit by which a step must lower it: above the limit; below the limit, by a fixed value, and
-#: by a free parameter.
+#: Shares of the misfit by which a step must lower it: the first step; a later step that does not reach the
+#: limit; below the limit, by a fixed value, and by a free parameter.
 _LEAST_GAIN = 0.1
+_GAIN_OF_LATER = 0.3
 _GAIN_OF_FIXED = 0.5
 _GAIN_OF_FREE = 0.75
+#: A start from another mesh frequency is followed up to this many times the best misfit.
+_FAR = 3.0
+#: A path of the beam is followed up to this many times the score of the best one.
+_NEAR_BEST = 1.6
+#: A single step that leaves more than this share of the misfit says little.
+_LITTLE = 0.5
 #: Two motions are the same where they differ by this share of the misfit.
 _SAME_MOTION = 0.05
 #: Rounds in which steps are exchanged, and the share of the score that an exchange must reach.
-_EXCHANGES = 2
+_EXCHANGES = 1
 _BETTER = 0.9
+#: The cause that is told with the change of stiffness, mass or inertia that the dampers do not follow.
+_DAMPERS_STAY = "dampers stay"
 #: Alternatives are named up to this many times the misfit.
 _WITHIN = 2.0
 
@@ -94,7 +102,15 @@ class Ladder:
     complete: bool
 
 
-def climb(problem: Problem, *, limit: float, budget: float, motions: Motions | None = None) -> Ladder:
+def climb(
+    problem: Problem,
+    *,
+    limit: float,
+    budget: float,
+    motions: Motions | None = None,
+    most_motions: int | None = None,
+    causes: Sequence[Cause] | None = None,
+) -> Ladder:
     """Search the explanations of a misfit, with a beam of three paths.
 
     A step is accepted where it lowers the misfit by more than 10 % and by more than the error of the
@@ -107,8 +123,16 @@ def climb(problem: Problem, *, limit: float, budget: float, motions: Motions | N
     limit : misfit below which the curves agree
     budget : processor time of the search [s]
     motions : motions of changed models, which searches of several curves of one pair share; they are added to
+    most_motions : number of motions at which the search ends; None: the budget alone ends it
+    causes : causes that are tried; None: all of the registry, and the delay of each channel
     """
-    search = Search(problem, budget, motions={} if motions is None else motions)
+    search = Search(
+        problem,
+        budget,
+        causes=None if causes is None else tuple(causes),
+        motions={} if motions is None else motions,
+        most_motions=most_motions,
+    )
     floor = search.floor(limit)
     best = _best_path(search, limit, floor)
     best = _exchanged(search, best, limit, floor)
@@ -124,13 +148,15 @@ def _best_path(search: Search, limit: float, floor: float) -> Path:
     enough = max(limit * _ENOUGH, floor)
     while best.trial.value > enough and len(best.steps) < _MOST_STEPS and not search.spent:
         candidates: list[Path] = []
-        for path in beam:
+        near = [path for path in beam if path.score(floor) < _NEAR_BEST * beam[0].score(floor)]
+        for path in near:
             candidates += [one for one in search.expand(path) if _accepted(one, path, limit, floor)]
             if candidates and min(one.trial.value for one in candidates) <= enough:
                 break
         beam = _distinct(candidates, floor)
         if not beam or not _accepted(beam[0], best, limit, floor):
-            if best.trial.value <= limit or len(best.steps) > 1:
+            little = best.trial.value > _LITTLE * search.problem.misfit.value
+            if best.trial.value <= limit or len(best.steps) > 1 or not little:
                 break
             # No single step says enough: a wrong sign may hide every other cause.
             joint = [one for one in search.with_reading(best) if _accepted(one, best, limit, floor)]
@@ -147,22 +173,26 @@ def _starts(search: Search, floor: float) -> list[Path]:
     start = search.start()
     variant = Variant(problem.pair)
     paths = []
-    if abs(problem.frequency.factor - 1.0) > SAME:
-        for name in OF_FREQUENCY:
-            cause = EXPLANATIONS[name]
+    if search.other_frequency:
+        for cause in EXPLANATIONS.values():
+            if not search.of_frequency(cause):
+                continue
             for choice in cause.choices(problem, variant):
                 step = Step(cause, choice)
                 trial = search.trial((step,))
                 if trial is not None:
                     paths.append(Path((step,), trial))
                     search.archive[paths[-1].keys] = paths[-1]
-    return sorted(paths, key=lambda path: path.score(floor)) or [start]
+    paths.sort(key=lambda path: path.score(floor))
+    return [path for path in paths if path.score(floor) < _FAR * paths[0].score(floor)] or [start]
 
 
 def _accepted(path: Path, before: Path, limit: float, floor: float) -> bool:
     """Whether a path lowers the misfit of the path before by enough."""
+    if path.vague and path.trial.value > limit:
+        return False
     gain = before.trial.value - path.trial.value
-    share = _LEAST_GAIN
+    share = _LEAST_GAIN if len(before.steps) == 0 or path.trial.value <= limit else _GAIN_OF_LATER
     if before.trial.value <= limit:
         share = _GAIN_OF_FIXED if path.free <= before.free else _GAIN_OF_FREE
     return gain > max(share * before.trial.value, floor)
@@ -186,9 +216,11 @@ def _exchanged(search: Search, best: Path, limit: float, floor: float) -> Path:
         better = best
         for number in range(len(best.steps)):
             parent = _refitted(search, without_step(best, number))
-            if parent is None or best.steps[number].cause.name in OF_FREQUENCY:
+            if parent is None or search.of_frequency(best.steps[number].cause):
                 continue
             for path in search.expand(parent):
+                if path.vague and path.trial.value > limit:
+                    continue
                 if path.score(floor) < _BETTER * better.score(floor):
                     better = path
         if better is best:
@@ -202,7 +234,7 @@ def _pruned(search: Search, best: Path, limit: float, floor: float) -> Path:
     number = 0
     while number < len(best.steps) and len(best.steps) > 1:
         shorter = _refitted(search, without_step(best, number))
-        kept_by_frequency = best.steps[number].cause.name in OF_FREQUENCY
+        kept_by_frequency = search.of_frequency(best.steps[number].cause)
         if shorter is None or kept_by_frequency or _accepted(best, shorter, limit, floor):
             number += 1
         else:
@@ -223,23 +255,37 @@ def _refitted(search: Search, steps: tuple[Step, ...]) -> Path | None:
     return None if trial is None else search.fitted(Path(steps, trial))
 
 
-def _explanations(search: Search, best: Path, floor: float) -> Iterator[Explanation]:
+def _explanations(search: Search, best: Path, floor: float) -> list[Explanation]:
     """Steps of a path, the step that lowers the misfit most first, with their alternatives."""
+    listed: list[Explanation] = []
+    causes: list[Cause] = []
     rest = list(best.steps)
     before: tuple[Step, ...] = ()
     while rest:
         values = [_misfit_of(search, (*before, step)) for step in rest]
-        first = [step.cause.name in OF_FREQUENCY for step in rest]
+        first = [search.of_frequency(step.cause) for step in rest]
         number = int(np.argmax(first)) if any(first) else int(np.argmin(values))
         step = rest.pop(number)
         before = (*before, step)
-        yield Explanation(
-            name=step.cause.name,
-            factor=step.label,
-            misfit=values[number] if rest else best.trial.value,
-            sentence=step.sentence,
-            alternatives=tuple(_alternatives(search, best, step, floor)),
+        misfit = values[number] if rest else best.trial.value
+        changed = [place for place, cause in enumerate(causes) if cause.kind is Kind.INPUT]
+        if step.cause.name == _DAMPERS_STAY and changed:
+            one = listed[changed[-1]]
+            listed[changed[-1]] = replace(
+                one, misfit=misfit, sentence=f"{one.sentence}, with dampers [N s/m] that stay as they are"
+            )
+            continue
+        listed.append(
+            Explanation(
+                name=step.cause.name,
+                factor=step.label,
+                misfit=misfit,
+                sentence=step.sentence,
+                alternatives=tuple(_alternatives(search, best, step, floor)),
+            )
         )
+        causes.append(step.cause)
+    return listed
 
 
 def _misfit_of(search: Search, steps: tuple[Step, ...]) -> float:

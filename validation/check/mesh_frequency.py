@@ -37,6 +37,14 @@ _REPEATS_BETTER = 0.25
 #: A mistaken speed or time must carry this share of the variation, and this many times as much as the pair's.
 _MOST = 0.5
 _TIMES = 4.0
+#: Change over a mesh cycle, over the variance, of curves that repeat there and not at the frequency of the
+#: pair: at most the first number, and the second number times the change at the frequency of the pair.
+_SMALL_CHANGE = 0.05
+_SMALLER = 0.1
+#: The first orders at the frequency of the pair carry little below this share of the variation.
+_LITTLE = 0.5
+#: Another mesh frequency of a model is searched within this share.
+_WIDE = 0.2
 #: Another speed of a record is searched within this share of the stated speed.
 _FAR = 0.05
 #: Fewest mesh cycles that tell one frequency from another.
@@ -107,8 +115,22 @@ def mesh_frequency(curves: Curves, pair: GearPair, *, mistakes: bool = True) -> 
         trial = carried.refined(factor)
         most = carried(trial, carried.reach)
         # Multiples of the true frequency carry a part of the orders, fractions carry all of them.
-        if most > _MOST and most > _TIMES * max(at_pair, 1e-3) and not _is_multiple(trial, best):
+        more = most > _MOST and most > _TIMES * max(at_pair, 1e-3)
+        # A frequency with orders in common carries much of the motion too, but the motion does not repeat.
+        if (more or (most > _MOST and carried.repeats(trial, best.factor))) and not _is_multiple(trial, best):
             best, at_pair = Frequency(trial, cause), most / _TIMES
+    if not best.cause and mistakes and at_pair < _LITTLE:
+        return _elsewhere(carried, best)
+    return best
+
+
+def _elsewhere(carried: _Carried, best: Frequency) -> Frequency:
+    """The mesh frequency within a fifth of that of the pair at which the curves repeat, else ``best``."""
+    length = min(_SHORT, carried.reach)
+    rough, _ = carried.strongest(1.0, _WIDE, length)
+    factor = carried.refined(rough)
+    if carried(factor, carried.reach) > _MOST and carried.repeats(factor, best.factor):
+        return Frequency(factor, "the speed or the sampling rate is another one")
     return best
 
 
@@ -195,20 +217,25 @@ class _Carried:
 
         In few cycles the first orders also gain by a wrong frequency that takes a part of higher orders.
         """
-
-        def change(trial: float) -> float:
-            first = self.cycles <= self.cycles[-1] - 1.0 / trial
-            later = self.cycles[first] + 1.0 / trial
-            differences = [np.interp(later, self.cycles, row) - row[first] for row in self.values]
-            power = np.maximum(np.mean(self.values**2, axis=1), 1e-300)
-            return float(np.mean([np.mean(row**2) for row in differences] / power))
-
-        at_factor = change(factor)
+        at_factor = self.change(factor)
         if at_factor < _REPEATS:
             return factor
         ends = (factor * (1.0 - SAME), factor * (1.0 + SAME))
-        fine = minimize_scalar(change, bounds=ends, method="bounded", options={"xatol": 1e-6 * factor})
+        fine = minimize_scalar(self.change, bounds=ends, method="bounded", options={"xatol": 1e-6 * factor})
         return float(fine.x) if float(fine.fun) < _REPEATS_BETTER * at_factor else factor
+
+    def change(self, factor: float) -> float:
+        """Return the mean square of the change over one mesh cycle, over the variance."""
+        first = self.cycles <= self.cycles[-1] - 1.0 / factor
+        later = self.cycles[first] + 1.0 / factor
+        differences = [np.interp(later, self.cycles, row) - row[first] for row in self.values]
+        power = np.maximum(np.mean(self.values**2, axis=1), 1e-300)
+        return float(np.mean([np.mean(row**2) for row in differences] / power))
+
+    def repeats(self, factor: float, other: float) -> bool:
+        """Return whether the curves repeat at a factor, and do not at another one."""
+        change = self.change(factor)
+        return change < min(_SMALL_CHANGE, _SMALLER * self.change(other))
 
     def strongest(self, about: float, width: float, length: float) -> tuple[float, float]:
         """Return the factor with the largest share, within ``about`` +- ``width``; then the step."""

@@ -20,7 +20,7 @@ from lumped.errors import refuse
 from lumped.schema.bodies import bodies_of
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray, IntArray
-from validation.check.quantities import PAIR_LABELS, QUANTITIES, Quantity
+from validation.check.quantities import DISPLACEMENTS_MISSED, PAIR_LABELS, QUANTITIES, Quantity, quantity_of
 from validation.signals.complex_orders import ComplexOrders, orders_of_period
 
 
@@ -50,11 +50,11 @@ class MotionCurves:
 
     def has(self, quantity: str) -> bool:
         """Return whether the motion contains a quantity."""
-        return QUANTITIES[quantity].variable in self.motion
+        return quantity_of(quantity).variable in self.motion
 
     def samples(self, quantity: str) -> FloatArray:
         """Return a quantity at the times of the motion, (n,), or (pair, n) for a quantity of tooth pairs."""
-        kind = QUANTITIES[quantity]
+        kind = quantity_of(quantity)
         if not self.has(quantity):
             allowed = ", ".join(name for name in QUANTITIES if self.has(name))
             raise refuse("channel", quantity, allowed, "Leave the channel out.")
@@ -65,6 +65,9 @@ class MotionCurves:
             values = self._derivative(values, kind.derivative)
         if quantity.startswith("mesh_torque"):
             values = self._mesh_torque(kind, values)
+        if quantity in DISPLACEMENTS_MISSED:
+            apart = self.motion["x_p"].to_numpy() - self.motion["x_g"].to_numpy()
+            values = values - DISPLACEMENTS_MISSED[quantity] * apart
         return values
 
     def mean_cycle(self) -> MotionCurves:

@@ -86,5 +86,27 @@ GEARS = (("p", "pinion"), ("g", "gear"))
 LINES = (("x", "along the line of action"), ("y", "off the line of action"))
 #: Name -> quantity.
 QUANTITIES = {quantity.name: quantity for quantity in _quantities()}
+#: What a transmission error is mistaken for: name -> quantity. No channel bears these names.
+MISTAKEN_ERRORS = {
+    quantity.name: quantity
+    for quantity in (
+        Quantity("dte of the rotations", "m", "transmission error without the displacements", "dte"),
+        Quantity(
+            "dte with reversed displacements",
+            "m",
+            "transmission error with the displacements reversed",
+            "dte",
+        ),
+    )
+}
+#: Share of the displacements x_p - x_g that each of these transmission errors has too little.
+DISPLACEMENTS_MISSED = {"dte of the rotations": 1.0, "dte with reversed displacements": 2.0}
+
+
+def quantity_of(name: str) -> Quantity:
+    """Return the quantity of a name, or what a transmission error is mistaken for."""
+    return MISTAKEN_ERRORS[name] if name in MISTAKEN_ERRORS else QUANTITIES[name]
+
+
 #: Labels of tooth pairs: B follows A one pitch later.
 PAIR_LABELS = "ABCDEFGH"

@@ -34,9 +34,11 @@ from validation.check.explanations.of_reading import causes_of_channels
 from validation.check.explanations.physics import Physics, motion_of
 from validation.check.explanations.reading import Reading, read
 from validation.check.explanations.registry import EXPLANATIONS
-from validation.check.misfit import Misfit
+from validation.check.mesh_frequency import SAME
+from validation.check.misfit import ChannelMisfit, Misfit
 from validation.check.motion_curves import MotionCurves
 from validation.check.problem import Problem
+from validation.check.settled import white_noise
 from validation.signals.complex_orders import complex_orders
 
 #: A free parameter counts as this much worse than a fixed value with the same misfit.
@@ -52,6 +54,10 @@ _REFINED = 6
 _PROMISES = 0.97
 #: Causes of another mesh frequency. One of them is the first step where the frequency is another one.
 OF_FREQUENCY = ("time axis", "speed of the curves")
+#: A cause that may be one of another mesh frequency.
+_MAY_BE_OF_FREQUENCY = "driving gear"
+#: Steps that are tried behind a step that changes our motion: those that promise most by their effect alone.
+_PROMISING = 30
 #: Intervals of the grid of a free parameter that are tried.
 _INTERVALS = 2
 #: Free parameters that are searched by Brent's method where Gauss-Newton steps leave a misfit above this,
@@ -61,6 +67,10 @@ _STALLED = 0.02
 _TRIALS = 14
 #: Free parameters nearer to neutral than this change nothing that is worth a sentence.
 _LEAST_CHANGE = 1e-3
+#: A change from cycle to cycle above this share of the motion is no noise but a motion that fades.
+_NOT_SETTLED = 0.01
+#: Readings behind which every other cause is tried: those that leave the smallest misfit.
+_HIDING_READINGS = 6
 #: Readings that can hide every other cause.
 HIDING = ("sign of a channel", "channels swapped", "time reversed")
 
@@ -147,6 +157,11 @@ class Path:
         """Number of free parameters."""
         return sum(step.choice is None for step in self.steps)
 
+    @property
+    def vague(self) -> bool:
+        """Whether many a cause has about the effect of the last step."""
+        return bool(self.steps) and self.steps[-1].choice is not None and self.steps[-1].choice.vague
+
     def score(self, floor: float) -> float:
         """Return the misfit, not below ``floor``, with the price of the free parameters."""
         return float(np.hypot(self.trial.value, floor)) * FREE_IS_WORSE**self.free
@@ -168,24 +183,29 @@ class Search:
     ----------
     problem : the curves and our motion
     budget : processor time [s]
-    causes : causes that are tried
+    causes : causes that are tried; None: all of the registry, and the delay of each channel
     motions : motions of changed models; searches of several curves of one pair can share them
+    most_motions : number of motions at which the search ends; None: the budget alone ends it
     runs : number of motions that were computed
     archive : keys of the steps -> best path with these steps
     """
 
     problem: Problem
     budget: float
-    causes: tuple[Cause, ...] = ()
+    causes: tuple[Cause, ...] | None = None
     motions: Motions = field(default_factory=dict)
+    most_motions: int | None = None
     runs: int = 0
     archive: dict[frozenset[tuple[str, str]], Path] = field(default_factory=dict)
+    _trials: dict[tuple[tuple[str, str, float], ...], Trial | None] = field(default_factory=dict)
     _readings: dict[Reading, tuple[ChannelOrders, ...] | None] = field(default_factory=dict)
     _expanded: dict[frozenset[tuple[str, str]], list[Path]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         """Set the end of the budget, and the motion that is known."""
-        self.causes = (*EXPLANATIONS.values(), *causes_of_channels(self.problem))
+        if self.causes is None:
+            self.causes = (*EXPLANATIONS.values(), *causes_of_channels(self.problem))
+        self._tried_causes = self.causes
         self._end = time.process_time() + self.budget
         start = Variant(self.problem.pair)
         self.motions[start.pair, start.physics] = self.problem.motion
@@ -203,6 +223,13 @@ class Search:
         ------
         BudgetSpentError : a motion is needed, and the budget is spent
         """
+        key = tuple((*step.key, step.coordinate) for step in steps)
+        if key not in self._trials:
+            self._trials[key] = self._tried(steps)
+        return self._trials[key]
+
+    def _tried(self, steps: Sequence[Step]) -> Trial | None:
+        """The trial of steps that were not tried before."""
         try:
             variant = Variant(self.problem.pair)
             for step in steps:
@@ -224,7 +251,7 @@ class Search:
         """Motion of a variant, computed once."""
         key = pair, physics
         if key not in self.motions:
-            if time.process_time() > self._end:
+            if self.spent:
                 raise BudgetSpentError
             self.runs += 1
             try:
@@ -271,7 +298,8 @@ class Search:
     @property
     def spent(self) -> bool:
         """Whether the budget is spent."""
-        return time.process_time() > self._end
+        enough = self.most_motions is not None and self.runs >= self.most_motions
+        return enough or time.process_time() > self._end
 
     def _with_one_step_more(self, path: Path) -> list[Path]:
         screened = self._screened(path)
@@ -292,13 +320,17 @@ class Search:
         A wrong sign, or two channels that are swapped, can hide every other cause. The motions are those of
         ``expand``, so that a reading costs little.
         """
-        screened = []
+        screened: list[tuple[float, Path]] = []
         try:
+            readings = []
             for step in list(self._fixed_steps(path)):
                 if step.cause.name in HIDING:
                     trial = self.trial((*path.steps, step))
                     if trial is not None:
-                        screened += self._screened(Path((*path.steps, step), trial))
+                        readings.append(Path((*path.steps, step), trial))
+            readings.sort(key=lambda one: one.trial.value)
+            for one in readings[:_HIDING_READINGS]:
+                screened += self._screened(one)
         except BudgetSpentError:
             pass
         screened.sort(key=lambda one: one[0])
@@ -309,15 +341,58 @@ class Search:
         screened: list[tuple[float, Path]] = []
         try:
             taken_up = self._taken_up(path)
+            candidates = self._promising(path, taken_up)
             for step in self._fixed_steps(path):
+                if candidates is not None and step.key not in candidates:
+                    continue
                 trial = self.trial((*path.steps, step))
                 if trial is not None:
                     rest = _without(trial.residual, taken_up)
                     screened.append((rest, Path((*path.steps, step), trial)))
-            screened += self._screened_free(path, taken_up)
+            screened += self._screened_free(path, taken_up, candidates)
         except BudgetSpentError:
             pass
         return sorted(screened, key=lambda one: one[0])
+
+    def _promising(self, path: Path, taken_up: FloatArray) -> set[tuple[str, str]] | None:
+        """Keys of the steps that promise most behind a path, by what each does without the path.
+
+        None: the path only reads the curves in another way, so that every step is tried.
+        """
+        base = tuple(
+            step for step in path.steps if step.cause.kind is Kind.READING or self.of_frequency(step.cause)
+        )
+        if len(base) == len(path.steps):
+            return None
+        before = self.trial(base)
+        if before is None:
+            return None
+        guesses: dict[tuple[str, str], float] = {}
+        for step in itertools.chain(self._fixed_steps(path), self._grid_steps(path)):
+            after = self.trial((*base, step))
+            if after is None:
+                continue
+            moved = path.trial.residual + after.residual - before.residual
+            guess = _between(path.trial.residual, moved, taken_up)[1]
+            if step.choice is not None:
+                guess = _without(moved, taken_up)
+            guesses[step.key] = min(guess, guesses.get(step.key, np.inf))
+        return set(sorted(guesses, key=lambda key: guesses[key])[:_PROMISING])
+
+    def _grid_steps(self, path: Path) -> Iterator[Step]:
+        """All places of the grids of free parameters that the path does not have."""
+        for cause in self._free_causes(path):
+            for value in cause.grid:
+                yield Step(cause, None, cause.coordinate(value))
+
+    def _free_causes(self, path: Path) -> Iterator[Cause]:
+        """Causes with a free parameter that the path does not have, where the pair allows them."""
+        variant = Variant(self.problem.pair)
+        for step in path.steps:
+            variant = step.of(variant)
+        for cause in self._tried_causes:
+            if cause.free and Step(cause, None).key not in path.keys and cause.applies(self.problem, variant):
+                yield cause
 
     def _archived(self, paths: list[Path]) -> list[Path]:
         """The paths, the smallest misfit first, after they are put into the archive."""
@@ -336,7 +411,7 @@ class Search:
         for step in path.steps:
             variant = step.of(variant)
         names = {step.cause.name for step in path.steps if step.cause.kind is not Kind.READING}
-        for cause in self.causes:
+        for cause in self._tried_causes:
             if cause.free or cause.name in names or self._of_start(cause):
                 continue
             try:
@@ -348,18 +423,26 @@ class Search:
                 if step.key not in path.keys:
                     yield step
 
+    @property
+    def other_frequency(self) -> bool:
+        """Whether the curves have another mesh frequency than the pair."""
+        return abs(self.problem.frequency.factor - 1.0) > SAME
+
+    def of_frequency(self, cause: Cause) -> bool:
+        """Whether a cause is one of another mesh frequency that the curves show."""
+        return cause.name in OF_FREQUENCY or (cause.name == _MAY_BE_OF_FREQUENCY and self.other_frequency)
+
     def _of_start(self, cause: Cause) -> bool:
         """Whether a cause is tried only at the start: another mesh frequency that the curves show."""
-        return cause.name in OF_FREQUENCY and self.problem.curves.abscissa == "time"
+        return self.of_frequency(cause) and self.problem.curves.abscissa == "time"
 
-    def _screened_free(self, path: Path, taken_up: FloatArray) -> Iterator[tuple[float, Path]]:
+    def _screened_free(
+        self, path: Path, taken_up: FloatArray, candidates: set[tuple[str, str]] | None
+    ) -> Iterator[tuple[float, Path]]:
         """Best place of each free parameter between the trials of its grid, by straight residuals."""
-        variant = Variant(self.problem.pair)
-        for step in path.steps:
-            variant = step.of(variant)
-        for cause in self.causes:
+        for cause in self._free_causes(path):
             step = Step(cause, None)
-            if not cause.free or step.key in path.keys or not cause.applies(self.problem, variant):
+            if candidates is not None and step.key not in candidates:
                 continue
             places = [(0.0, path.trial)]
             for value in cause.grid:
@@ -468,6 +551,8 @@ def noise_of(problem: Problem) -> float:
     Orders above those that are compared are no noise, because they repeat with every cycle. Curves of less
     than two cycles, and of teeth that differ, count as free of noise.
     """
+    if problem.curves.role == "model" and problem.settled.change > _NOT_SETTLED:
+        return _white_noise(problem)  # what changes is a motion that fades
     cycles = problem.cycles[problem.settled.used]
     whole = int(np.ptp(cycles) + 0.01 + cycles[1] - cycles[0])
     if whole < 2 or (problem.orders % 1.0).any():
@@ -489,14 +574,33 @@ def noise_of(problem: Problem) -> float:
     return float(np.sqrt(np.mean(squares))) if squares else 0.0
 
 
+def _white_noise(problem: Problem) -> float:
+    """Misfit by white noise: a complex amplitude of n samples has the variance 4 noise^2/n."""
+    squares = []
+    for row in problem.misfit.channels:
+        if row.channel.channel.tooth_pair is None:
+            values = row.channel.channel.values[problem.settled.used]
+            variance = 4.0 * row.channel.orders.orders.size / values.size
+            squares.append(variance * (white_noise(values) / row.scale) ** 2)
+    return float(np.sqrt(np.mean(squares))) if squares else 0.0
+
+
 def residual_of(misfit: Misfit) -> FloatArray:
     """Return the residual, whose root sum square is the value of the misfit."""
+    groups = [_group(row) for row in misfit.channels]
     parts = []
-    for row in misfit.channels:
+    for row, group in zip(misfit.channels, groups, strict=True):
         difference = (row.channel.orders.values - row.ours.values) / row.scale
         mean = (row.channel.orders.mean - row.ours.mean) / row.static if row.compares_mean else 0.0
-        parts.append(np.concatenate([difference.real, difference.imag, [mean]]))
-    return np.asarray(np.concatenate(parts) / np.sqrt(len(parts)), dtype=np.float64)
+        part = np.concatenate([difference.real, difference.imag, [mean]])
+        parts.append(part / np.sqrt(len(set(groups)) * groups.count(group)))
+    return np.asarray(np.concatenate(parts), dtype=np.float64)
+
+
+def _group(row: ChannelMisfit) -> str:
+    """Channels that count as one: all tooth pairs of a quantity; else the channel alone."""
+    one = row.channel.channel
+    return f"pairs: {one.quantity}" if one.tooth_pair else one.name
 
 
 def _without(residual: FloatArray, taken_up: FloatArray) -> float:

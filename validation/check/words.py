@@ -22,6 +22,8 @@ __all__ = [
     "subject",
 ]
 
+#: Explanations that leave more than this many times the limit explain little.
+_FAR = 3.0
 #: Most static quantities, and most channels, in a sentence.
 _MOST = 3
 
@@ -56,16 +58,22 @@ def speed_failure(misfit: SpeedMisfit) -> str:
     return f"The largest difference is at {to_stated(misfit.worst_speed, 'rpm'):.0f} rpm."
 
 
-def ladder_words(ladder: Ladder) -> str:
-    """Return the sentences on the steps of the ladder."""
+def ladder_words(ladder: Ladder, limit: float) -> str:
+    """Return the sentences on the steps of the ladder, and whether they bring the misfit below the limit."""
     if not ladder.steps:
         return "No named explanation makes the difference much smaller."
+    last = ladder.steps[-1].misfit
     first = ladder.steps[0]
+    if last > _FAR * limit:
+        causes = "; ".join(step.sentence.removeprefix("Compatible with ") for step in ladder.steps)
+        return f"No named explanation brings the misfit below {percent(last)}; the nearest is {causes}."
     sentences = [f"{first.sentence}: the misfit is then {percent(first.misfit)}."]
     sentences += [
         f"Then {step.sentence[0].lower()}{step.sentence[1:]}: {percent(step.misfit)}."
         for step in ladder.steps[1:]
     ]
+    if last > limit:
+        sentences.append("The misfit stays above the limit: something else differs too.")
     return " ".join(sentences)
 
 

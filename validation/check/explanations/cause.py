@@ -61,11 +61,14 @@ class Choice(NamedTuple):
     label : value that a user reads: a number, or the name of a choice
     words : the explanation, behind "compatible with"
     variant : the variant with this value
+    vague : whether many a cause has about this effect: the value is then accepted only where it brings the
+        misfit below the limit
     """
 
     label: float | str
     words: str
     variant: Callable[[Variant], Variant]
+    vague: bool = False
 
 
 @dataclass(frozen=True)

@@ -71,6 +71,23 @@ def _friction_part(problem: Problem, variant: Variant) -> list[Choice]:
     ]
 
 
+def _friction_course(problem: Problem, variant: Variant) -> list[Choice]:
+    """Other courses of the friction over the path of contact."""
+    if not _has_friction(variant) or variant.physics.course:
+        return []
+    return [
+        _altered(
+            "without reversal", "friction that does not reverse at the pitch point", course="without reversal"
+        ),
+        _altered("leading pair", "friction of the leading tooth pair only", course="leading pair"),
+        _altered(
+            "total load on the leading pair",
+            "friction of the whole mesh force at the leading tooth pair",
+            course="total load on the leading pair",
+        ),
+    ]
+
+
 def _mesh_force_sign(problem: Problem, variant: Variant) -> list[Choice]:
     if variant.pair.shafts is not None:
         return []
@@ -106,6 +123,11 @@ def _over_cycle(problem: Problem, variant: Variant) -> list[Choice]:
         "single pair": "a single tooth pair in contact all the time",
         "double pair": "two tooth pairs in contact all the time",
         "shared evenly": "all tooth pairs in contact with the same share of the load",
+        "whole mesh for each pair": "the stiffness of the whole mesh on each tooth pair",
+        "first harmonic": "the mean and the first harmonic of the mesh stiffness",
+        "three harmonics": "the mean and three harmonics of the mesh stiffness",
+        "two levels": "a rectangular mesh stiffness, one value for each number of pairs in contact",
+        "smoothed": "a mesh stiffness without jumps, smoothed over a fifth of the mesh cycle",
     }
     if variant.physics.stiffness or variant.pair.mesh.stiffness.whole_mesh:
         return []
@@ -162,12 +184,18 @@ def _causes() -> Iterator[Cause]:
     yield altered(
         "part of friction", "moments or forces of friction forgotten", "moments, forces", _friction_part
     )
+    yield altered(
+        "friction over the path",
+        "another course of the friction over the path of contact",
+        "without reversal, leading pair, total load on the leading pair",
+        _friction_course,
+    )
     yield Cause(
         name="friction coefficient",
         kind=Kind.PHYSICS,
         meaning="the friction coefficient",
-        span="factor, about 0.3 to 3.3",
-        grid=(0.3, 0.6, 1.7, 3.3),
+        span="factor, about 0.07 to 5",
+        grid=(0.07, 0.4, 1.8, 5.0),
         change=lambda variant, value: variant.with_physics(friction=variant.physics.friction * value),
         words="the friction coefficient times {value}",
         applies=lambda problem, variant: _has_friction(variant),
@@ -185,7 +213,8 @@ def _causes() -> Iterator[Cause]:
     yield altered(
         "stiffness over the mesh cycle",
         "another course of the mesh stiffness",
-        "reversed, constant, single pair, double pair, shared evenly",
+        "reversed, constant, single pair, double pair, shared evenly, whole mesh for each pair, first "
+        "harmonic, three harmonics, two levels, smoothed",
         _over_cycle,
     )
     yield altered("pitch radius", "pitch radii in place of base radii", "1/cos(alpha)", _radius)

@@ -15,6 +15,7 @@ from lumped.schema.bodies import bodies_of, solid_disc
 from lumped.schema.pair import GearPair
 from lumped.stiffness.registry import MODELS
 from validation.check.explanations.cause import Cause, Choice, Kind, Variant
+from validation.check.explanations.of_design import has_relief
 from validation.check.problem import Problem
 
 #: Trial factors: of a stiffness, of a load or a mass, of a damper, of a bearing.
@@ -247,24 +248,13 @@ def _contact(problem: Problem, variant: Variant) -> list[Choice]:
         words = "prescribed contact: teeth touch from A to D, with a stiffness that no load changes"
         prescribed = {"mesh.contact": "prescribed"}
         choices = [_choice("prescribed", words, lambda pair: prescribed)]
-        if _has_relief(variant.pair):
+        if has_relief(variant.pair):
             without = {**prescribed, "mesh.relief": "ignored"}
             words = "prescribed contact of perfect involutes: relief is ignored"
             choices.append(_choice("prescribed, relief ignored", words, lambda pair: without))
         return choices
     words = "loaded contact: teeth touch where their gaps close under load"
     return [_choice("loaded", words, lambda pair: {"mesh.contact": "loaded"})]
-
-
-def _has_relief(pair: GearPair) -> bool:
-    gears = (pair.pinion, pair.gear)
-    return any(gear.tip_relief is not None or gear.root_relief is not None for gear in gears)
-
-
-def _relief(problem: Problem, variant: Variant) -> list[Choice]:
-    if variant.pair.mesh.relief == "ignored" or not _has_relief(variant.pair):
-        return []
-    return [_choice("ignored", "tip and root relief ignored", lambda pair: {"mesh.relief": "ignored"})]
 
 
 def _deviations(problem: Problem, variant: Variant) -> list[Choice]:
@@ -549,7 +539,6 @@ def _fixed() -> Iterator[Cause]:
     yield fixed(
         "radius of the discs", "mass and inertia of discs of another circle", "tip circle, base circle", _disc
     )
-    yield fixed("relief ignored", "tip and root relief ignored", "ignored", _relief)
     yield fixed(
         "exchanged",
         "values of pinion and gear, or of both directions, exchanged",

@@ -9,33 +9,53 @@ import itertools
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 from validation.check.explanations.cause import Cause, Choice, Kind, Variant
 from validation.check.explanations.reading import Reading, families, refined_curves_fit
 from validation.check.problem import Problem
-from validation.check.quantities import GEARS, LINES, QUANTITIES, Quantity
+from validation.check.quantities import GEARS, LINES, QUANTITIES, Quantity, quantity_of
 
-#: Factors by which units and definitions are mistaken: words -> factor that the values have too much.
-UNIT_FACTORS = {
-    "thousandths of the unit": 1e3,
-    "millionths of the unit": 1e6,
-    "thousands of the unit": 1e-3,
-    "millions of the unit": 1e-6,
-    "degrees for radians": 180.0 / math.pi,
-    "radians for degrees": math.pi / 180.0,
-    "turns for radians": 1.0 / (2.0 * math.pi),
-    "radians for turns": 2.0 * math.pi,
-    "rpm for rad/s": 30.0 / math.pi,
-    "inches for metres": 1.0 / 0.0254,
-    "kilogram-force for newtons": 1.0 / 9.80665,
-    "pounds for newtons": 1.0 / 4.4482216,
-    "twice the value: diameter for radius, or peak to peak for amplitude": 2.0,
-    "half the value: radius for diameter, or amplitude for peak to peak": 0.5,
-    "rms for peak": 1.0 / math.sqrt(2.0),
-    "peak for rms": math.sqrt(2.0),
-}
+
+class UnitFactor(NamedTuple):
+    """A factor by which units and definitions are mistaken.
+
+    Attributes
+    ----------
+    words : the mistake
+    factor : factor that the values have too much
+    units : beginnings of the SI units that the mistake concerns; empty: every unit
+    """
+
+    words: str
+    factor: float
+    units: tuple[str, ...] = ()
+
+
+UNIT_FACTORS = (
+    UnitFactor("thousandths of the unit", 1e3),
+    UnitFactor("millionths of the unit", 1e6),
+    UnitFactor("thousands of the unit", 1e-3),
+    UnitFactor("millions of the unit", 1e-6),
+    UnitFactor("degrees for radians", 180.0 / math.pi, ("rad",)),
+    UnitFactor("radians for degrees", math.pi / 180.0, ("rad",)),
+    UnitFactor("turns for radians", 1.0 / (2.0 * math.pi), ("rad",)),
+    UnitFactor("radians for turns", 2.0 * math.pi, ("rad",)),
+    UnitFactor("rpm for rad/s", 30.0 / math.pi, ("rad/s",)),
+    UnitFactor("inches for metres", 1.0 / 0.0254, ("m",)),
+    UnitFactor("kilogram-force for newtons", 1.0 / 9.80665, ("N",)),
+    UnitFactor("pounds for newtons", 1.0 / 4.4482216, ("N",)),
+    UnitFactor("twice the value: diameter for radius, or peak to peak for amplitude", 2.0),
+    UnitFactor("half the value: radius for diameter, or amplitude for peak to peak", 0.5),
+    UnitFactor("rms for peak", 1.0 / math.sqrt(2.0)),
+    UnitFactor("peak for rms", math.sqrt(2.0)),
+)
 #: A unit is tried where it brings the sizes of both motions nearer to each other by this factor.
 _NEARER = 1.2
+#: A unit factor that is nearer to 1 than this is vague: other causes change a channel by as much.
+VAGUE = 15.0
+#: A factor that is not vague must take this share of the distance between the sizes away.
+_TAKES = 0.5
 #: More channels than this are not swapped pair by pair.
 _MOST_SWAPPED = 12
 #: Time constant of a low-pass filter: mesh cycles over 2 pi. Delay: mesh cycles.
@@ -79,14 +99,20 @@ def _units(problem: Problem, variant: Variant) -> list[Choice]:
         return lambda reading: reading.with_factors(dict.fromkeys(names, factor))
 
     choices = []
+    kinds = {channel.name: channel.kind.unit for channel in problem.curves.channels}
     for words, names in _groups(problem).items():
         distance = max(abs(math.log(ratios[name])) for name in names)
-        for unit, factor in UNIT_FACTORS.items():
+        for unit in UNIT_FACTORS:
+            if unit.units and not all(kinds[name].startswith(unit.units) for name in names):
+                continue
+            factor = unit.factor
             nearer = max(abs(math.log(ratios[name] / factor)) for name in names)
-            if nearer < distance - math.log(_NEARER):
+            vague = abs(math.log(factor)) < math.log(VAGUE)
+            if nearer < (distance - math.log(_NEARER) if vague else (1.0 - _TAKES) * distance):
                 label = f"{words}: {factor:.6g}"
-                text = f"{words} {factor:.4g} times too large ({unit})"
-                choices.append(_reading(label, text, times(names, factor)))
+                text = f"{words} {factor:.4g} times too large ({unit.words})"
+                choice = _reading(label, text, times(names, factor))
+                choices.append(choice._replace(vague=vague))
     return choices
 
 
@@ -101,6 +127,8 @@ def _radii(problem: Problem, variant: Variant) -> list[Choice]:
         name = channel.quantity
         if name.startswith("dte"):
             factors = {f"an angle of the {gear}": 1.0 / radius for gear, radius in radii.items()}
+            cosine = math.cos(g.operating_pressure_angle)
+            factors |= {"a length on the pitch circle": 1.0 / cosine, "a length over 1/cos(alpha)": cosine}
         elif name.startswith("theta"):
             own = "pinion" if "_p" in name else "gear"
             factors = {"a length on the base circle": radii[own]}
@@ -148,6 +176,13 @@ def _swapped(problem: Problem, variant: Variant) -> list[Choice]:
     return choices
 
 
+def exchanged_gears(problem: Problem, reading: Reading) -> Reading:
+    """Return a reading in which each channel of a gear holds the same quantity of the other gear."""
+    before = dict(reading.quantities)
+    names = {one.name: before.get(one.name, one.quantity) for one in problem.curves.channels}
+    return reading.with_quantities({name: _other_gear(quantity) for name, quantity in names.items()})
+
+
 def _other_gear(quantity: str) -> str:
     """Name of the same quantity of the other gear."""
     stem, _, ending = quantity.partition("_dot") if "_dot" in quantity else quantity.partition("_ddot")
@@ -171,7 +206,7 @@ def _other_quantities(problem: Problem, variant: Variant) -> list[Choice]:
     choices = []
     quantities = dict(variant.reading.quantities)
     for channel in problem.curves.channels:
-        kind = QUANTITIES[quantities.get(channel.name, channel.quantity)]
+        kind = quantity_of(quantities.get(channel.name, channel.quantity))
         for words, quantity, factor in _mistaken(problem, kind):
 
             def change(
@@ -187,6 +222,15 @@ def _other_quantities(problem: Problem, variant: Variant) -> list[Choice]:
 def _mistaken(problem: Problem, kind: Quantity) -> Iterator[tuple[str, str, float]]:
     """Words, quantity, and factor from that quantity to the values of the channel."""
     name = kind.name
+    if name == "dte":
+        cosine = math.cos(problem.pair.geometry.operating_pressure_angle)
+        yield "the rotations without the displacements of the bearings", "dte of the rotations", 1.0
+        yield (
+            "the rotations on the pitch circle, without the displacements of the bearings",
+            "dte of the rotations",
+            1.0 / cosine,
+        )
+        yield "the displacements of the bearings with the wrong sign", "dte with reversed displacements", 1.0
     stem = name.removesuffix("_ddot").removesuffix("_dot")
     others = [stem, f"{stem}_dot", f"{stem}_ddot"]
     nouns = ("the motion itself", "the rate", "the acceleration")
@@ -288,16 +332,19 @@ def _causes() -> Iterator[Cause]:
         _time_axis,
     )
     yield read("sign of a channel", "a channel, or a family of channels, with the wrong sign", "-1", _signs)
-    units = ", ".join(f"{factor:.4g}" for factor in UNIT_FACTORS.values())
+    units = ", ".join(f"{unit.factor:.4g}" for unit in UNIT_FACTORS)
     yield read("unit of a channel", "a channel, or a family of channels, in another unit", units, _units)
     yield read(
-        "radius of a channel", "an angle for a length, or of the other gear", "base radii, ratio", _radii
+        "radius of a channel",
+        "an angle for a length, or of the other gear",
+        "base radii, ratio, cos(alpha)",
+        _radii,
     )
     yield read("channels swapped", "two channels swapped", "pairs of channels", _swapped)
     yield read(
         "another quantity",
         "a channel that holds another quantity",
-        "displacement, rate, force",
+        "displacement, rate, force; dte of the rotations alone",
         _other_quantities,
     )
     yield read("time reversed", "time that runs backwards", "reversed", _reversed)

@@ -45,11 +45,28 @@ _PULLS = -1e-6
 _GROWS = 1.2
 #: Fit error of an altered law over its largest value.
 _TOLERANCE = 1e-7
+#: Places in a mesh cycle at which a stiffness is smoothed, the window in mesh cycles, and its harmonics.
+_COURSE = 2048
+_WINDOW = 0.2
+_HARMONICS = 12
 #: Positions closer than this share of the base pitch are one.
 _SAME = 1e-9
 
 Damper = Literal["of each pair", "of the whole mesh", "proportional", "constant"]
-Stiffness = Literal["", "reversed", "constant", "single pair", "double pair", "shared evenly"]
+Stiffness = Literal[
+    "",
+    "reversed",
+    "constant",
+    "single pair",
+    "double pair",
+    "shared evenly",
+    "whole mesh for each pair",
+    "first harmonic",
+    "three harmonics",
+    "two levels",
+    "smoothed",
+]
+Friction = Literal["", "without reversal", "leading pair", "total load on the leading pair"]
 Bearings = Literal["elastic", "rigid", "left out"]
 
 
@@ -64,6 +81,7 @@ class Physics:
     moment_pinion, moment_gear : factors on the moments of friction about the axes
     force_pinion, force_gear : factors on the friction forces on the translations
     mesh_force_gear : factor on the mesh force along the line of action of the gear
+    course : course of the friction over the path of contact
     radius : factor on the base radii as lever arms of the mesh force and in the transmission error
     damper : law of the dampers of the teeth
     stiffness : change of the stiffness of the tooth pairs over the mesh cycle
@@ -77,6 +95,7 @@ class Physics:
     force_pinion: float = 1.0
     force_gear: float = 1.0
     mesh_force_gear: float = 1.0
+    course: Friction = ""
     radius: float = 1.0
     damper: Damper = "of each pair"
     stiffness: Stiffness = ""
@@ -85,7 +104,13 @@ class Physics:
     @property
     def of_equations(self) -> bool:
         """Whether the constant data of the equations of motion are altered."""
-        of_laws = {"pulling": False, "friction": 1.0, "damper": "of each pair", "stiffness": ""}
+        of_laws = {
+            "pulling": False,
+            "friction": 1.0,
+            "course": "",
+            "damper": "of each pair",
+            "stiffness": "",
+        }
         return replace(self, **of_laws) != Physics()  # type: ignore[arg-type]
 
 
@@ -176,9 +201,51 @@ def altered_elements(pair: GearPair, physics: Physics) -> MeshElements:
         factor = damper_factor(pair, elements, physics.damper)
         damping = _fitted(lambda xi: elements.damping(xi) * factor(xi), pair, elements)
         elements = replace(elements, damping=damping)
-    if physics.friction != 1.0:
-        elements = replace(elements, friction=elements.friction.scaled(physics.friction))
-    return elements
+    friction = altered_friction(pair, elements.friction, elements.stiffness, physics)
+    return replace(elements, friction=friction)
+
+
+def altered_friction(
+    pair: GearPair, friction: PathFunction, stiffness: PathFunction, physics: Physics
+) -> PathFunction:
+    """Return the friction coefficient over xi with alterations of its size and of its course."""
+    if physics.course:
+        friction = _friction_over_path(pair, friction, stiffness, physics.course)
+    return friction if physics.friction == 1.0 else friction.scaled(physics.friction)
+
+
+def _friction_over_path(
+    pair: GearPair, friction: PathFunction, stiffness: PathFunction, course: Friction
+) -> PathFunction:
+    """Friction coefficient over xi with another course.
+
+    Without reversal: |mu|. Only the leading pair, the last one that is on the path of contact: mu where the
+    next pair is no longer there, else 0. Its friction by the load of all pairs: mu K/k there, with the
+    stiffness K of the whole mesh, because loads are shared as stiffnesses.
+    """
+    low, high = friction.interval
+    pitch = pair.geometry.base_pitch
+    leads = high - pitch
+    total = _total(pair, stiffness)
+
+    def changed(xi: FloatArray) -> FloatArray:
+        if course == "without reversal":
+            return np.abs(friction(xi))
+        leading = np.where(xi > leads, friction(xi), 0.0)
+        if course == "leading pair":
+            return np.asarray(leading)
+        of_pair = np.maximum(stiffness(xi), 1e-6 * pair_stiffness_scale)
+        return np.asarray(leading * np.maximum(total(xi), of_pair) / of_pair)
+
+    pair_stiffness_scale = mean_of_pairs(stiffness, pitch)
+    laws = (friction, stiffness) if course.startswith("total") else (friction,)
+    marks = _marks(pair, laws, low, high)
+    marks = np.append(marks, [leads, pair.geometry.L_XP])
+    marks = np.unique(marks[(marks > low + _SAME * pitch) & (marks < high - _SAME * pitch)])
+    marks = marks[np.diff(marks, prepend=-np.inf) > _SAME * pitch]
+    size = float(np.abs(changed(np.linspace(low, high, 401)[1:-1])).max())
+    breaks = np.concatenate([[low], marks, [high]])
+    return PathFunction.fit(changed, breaks, marks, tolerance=_TOLERANCE * max(size, 1e-300))
 
 
 class AlteredLaws(ToothLaws):
@@ -186,12 +253,13 @@ class AlteredLaws(ToothLaws):
 
     def __init__(self, pair: GearPair, physics: Physics) -> None:
         super().__init__(pair)
-        self.friction = self.friction.scaled(physics.friction)
+        laws = contact_of(pair).elements(pair)
+        self.friction = altered_friction(pair, self.friction, laws.stiffness, physics)
         self.factor: Callable[[FloatArray], FloatArray] | None = None
         if self.elements is not None:
             self.elements = altered_elements(pair, physics)
         elif physics.damper != "of each pair":
-            self.factor = damper_factor(pair, contact_of(pair).elements(pair), physics.damper)
+            self.factor = damper_factor(pair, laws, physics.damper)
 
     def of_kind(self, kind: int, xi: FloatArray) -> Records:
         """Return LAWS of a kind at positions xi of any shape [m]."""
@@ -270,6 +338,11 @@ def _with_stiffness(pair: GearPair, elements: MeshElements, change: Stiffness) -
     elif change == "shared evenly":
         pairs = _total(pair, PathFunction.constant(1.0, low, high))
         changed = _fitted(lambda xi: total(xi) / np.maximum(pairs(xi), 1.0), pair, elements)
+    elif change == "whole mesh for each pair":
+        changed = _fitted(total, pair, elements)
+    elif change in ("first harmonic", "three harmonics", "two levels", "smoothed"):
+        course = _smoother(pair, stiffness, change)
+        changed = _fitted(lambda xi: stiffness(xi) * course(xi) / total(xi), pair, elements)
     else:
         count = 1.0 if change == "single pair" else 2.0
         one_pair = float(stiffness(np.array([middle]))[0])
@@ -287,6 +360,43 @@ def _with_stiffness(pair: GearPair, elements: MeshElements, change: Stiffness) -
         damping=_fitted(damping, pair, elements, interval) if ratio else changed.scaled(0.0),
         error=PathFunction.constant(0.0, *interval) if interval != stiffness.interval else elements.error,
     )
+
+
+def _smoother(
+    pair: GearPair, stiffness: PathFunction, change: Stiffness
+) -> Callable[[FloatArray], FloatArray]:
+    """Return the stiffness of the whole mesh over xi, with less detail than it has.
+
+    Its mean with one harmonic or three; one value for each number of tooth pairs in contact; or its mean over
+    a fifth of the base pitch.
+    """
+    low, high = stiffness.interval
+    pitch = pair.geometry.base_pitch
+    total = _total(pair, stiffness)
+    places = low + (np.arange(_COURSE) + 0.5) / _COURSE * pitch
+    values = total(places)
+    if change == "two levels":
+        pairs = _total(pair, PathFunction.constant(1.0, low, high))
+        count = np.round(pairs(places))
+        levels = {float(number): float(values[count == number].mean()) for number in np.unique(count)}
+        numbers, means = np.array(sorted(levels)), np.array([levels[one] for one in sorted(levels)])
+        return lambda xi: np.asarray(np.interp(np.round(pairs(xi)), numbers, means), dtype=np.float64)
+    orders = np.arange(1, _COURSE // 8)
+    waves = np.fft.rfft(values)[1 : orders.size + 1] * (2.0 / _COURSE)
+    if change == "smoothed":
+        waves = waves * np.sinc(_WINDOW * orders)
+        orders, waves = orders[:_HARMONICS], waves[:_HARMONICS]
+    else:
+        most = 1 if change == "first harmonic" else 3
+        orders, waves = orders[:most], waves[:most]
+    least = 0.02 * float(values.mean())
+
+    def course(xi: FloatArray) -> FloatArray:
+        phase = (xi - places[0]) / pitch
+        angle = 2.0 * np.pi * np.multiply.outer(phase, orders)
+        return np.asarray(np.maximum(values.mean() + (np.exp(1j * angle) @ waves).real, least))
+
+    return course
 
 
 def _linear_motion(system: LTVSystem, physics: Physics) -> xr.Dataset | None:

@@ -18,7 +18,7 @@ from lumped.errors import NumericalError
 from lumped.model.periodic_system import LTVSystem, supports_of
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
-from validation.check.curve_orders import ChannelOrders, orders_of_channel
+from validation.check.curve_orders import ChannelOrders, orders_of_channel, without_ramp
 from validation.check.curves import Channel, Curves
 from validation.check.problem import Problem
 from validation.signals.complex_orders import ComplexOrders
@@ -114,6 +114,8 @@ def without_free_vibrations(problem: Problem) -> tuple[ChannelOrders, ...]:
             result.append(one)
             continue
         values = one.channel.values[used]
+        if one.channel.kind.is_rotation:
+            values = without_ramp(problem.cycles, values)
         angle = 2.0 * np.pi * np.multiply.outer(problem.cycles, one.orders.orders)
         steady = np.hstack([np.ones((values.size, 1)), np.cos(angle), -np.sin(angle)])
         fit = np.linalg.lstsq(np.hstack([steady, waves]), values, rcond=1e-10)[0]

@@ -1,7 +1,7 @@
 """The registry of explanations by name: readings of the curves, alterations of the equations, inputs.
 
-A further explanation is an entry of ``OF_READING``, ``OF_MODEL`` or ``OF_PAIR``, a row of the table in
-docs/how_to/check_your_model.md and a case in tests/validation/check/test_explanations.py.
+A further explanation is an entry of ``OF_READING``, ``OF_MODEL``, ``OF_PAIR`` or ``OF_DESIGN``, a row of the
+table in docs/how_to/check_your_model.md and a case in tests/validation/check/test_explanations.py.
 """
 
 from __future__ import annotations
@@ -10,11 +10,12 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from validation.check.explanations.cause import Cause
+from validation.check.explanations.of_design import OF_DESIGN
 from validation.check.explanations.of_model import OF_MODEL
 from validation.check.explanations.of_pair import OF_PAIR
 from validation.check.explanations.of_reading import OF_READING
 
 #: Name -> cause, the cheapest first: a reading costs no motion.
 EXPLANATIONS: Mapping[str, Cause] = MappingProxyType(
-    {cause.name: cause for cause in (*OF_READING, *OF_PAIR, *OF_MODEL)}
+    {cause.name: cause for cause in (*OF_READING, *OF_PAIR, *OF_DESIGN, *OF_MODEL)}
 )

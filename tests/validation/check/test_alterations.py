@@ -1,0 +1,117 @@
+"""Are the alterations of the model what their words say? Each is compared with a formula, not with itself."""
+
+import numpy as np
+import pytest
+
+import lumped
+from tests.unlike_pairs import unlike_pair
+from tests.validation.check.test_explanations import COULOMB, sampled
+from validation.check.explanations.cause import Variant
+from validation.check.explanations.physics import Physics, altered_elements, motion_of
+from validation.check.explanations.registry import EXPLANATIONS
+from validation.check.problem import Problem
+from validation.check.reference import lumped_motion
+
+
+@pytest.fixture(scope="module", params=["high_contact_ratio_29_47", "contact_ratio_1_1_large_shifts"])
+def pair(request):
+    """Two pairs that are unlike each other, with Coulomb friction of 0.06."""
+    if request.param.startswith("high"):
+        return lumped.load_gear_pair(request.param).with_(COULOMB)
+    return unlike_pair(request.param).with_(COULOMB)
+
+
+def places(pair):
+    """Positions inside the path of contact, and whether no pair is ahead at each."""
+    g = pair.geometry
+    xi = np.linspace(g.L_XA, g.L_XD, 203)[1:-1]
+    return xi, xi + g.base_pitch > g.L_XD
+
+
+def variant_of(pair, name, label):
+    """The variant of a pair with a fixed value."""
+    motion = lumped_motion(pair)
+    problem = Problem.of(pair, sampled(motion), motion)
+    choices = EXPLANATIONS[name].choices(problem, Variant(pair))
+    return next(one for one in choices if one.label == label).variant(Variant(pair))
+
+
+def test_friction_over_the_path(pair):
+    """mu is -0.06 before the pitch point and 0.06 behind it (Coulomb, s = sgn(xi - L_XP))."""
+    xi, leads = places(pair)
+    sign = np.sign(xi - pair.geometry.L_XP)
+    expected = {
+        "without reversal": 0.06 + 0.0 * xi,
+        "leading pair": np.where(leads, 0.06 * sign, 0.0),
+        "": 0.06 * sign,
+    }
+    for course, values in expected.items():
+        law = altered_elements(pair, Physics(course=course)).friction
+        assert law(xi) == pytest.approx(values, abs=1e-9), course
+
+
+def total_of(pair, law):
+    """Sum of a law over all pairs, at positions of one of them."""
+    xi, _ = places(pair)
+    return sum(law(xi + number * pair.geometry.base_pitch) for number in range(-3, 4))
+
+
+def test_total_load_on_the_leading_pair(pair):
+    xi, leads = places(pair)
+    stiffness = altered_elements(pair, Physics()).stiffness
+    law = altered_elements(pair, Physics(course="total load on the leading pair")).friction
+    sign = np.sign(xi - pair.geometry.L_XP)
+    expected = np.where(leads, 0.06 * sign * total_of(pair, stiffness) / stiffness(xi), 0.0)
+    assert law(xi) == pytest.approx(expected, rel=1e-4, abs=1e-9)
+
+
+def test_stiffness_over_the_mesh_cycle(pair):
+    """The mean of the whole mesh stays; one harmonic is a cosine; each pair has the stiffness of the mesh."""
+    true = altered_elements(pair, Physics()).stiffness
+    whole = total_of(pair, true)
+    for_each = altered_elements(pair, Physics(stiffness="whole mesh for each pair")).stiffness
+    assert for_each(places(pair)[0]) == pytest.approx(whole, rel=1e-5)
+    g = pair.geometry
+    phase = (np.arange(256) + 0.5) / 256
+    for name, most in (("first harmonic", 1), ("three harmonics", 3), ("two levels", 128), ("smoothed", 100)):
+        law = altered_elements(pair, Physics(stiffness=name)).stiffness
+        total = sum(law(g.L_XA + (phase + number) * g.base_pitch) for number in range(3))
+        right = sum(true(g.L_XA + (phase + number) * g.base_pitch) for number in range(3))
+        waves, original = np.fft.rfft(total), np.fft.rfft(right)
+        assert waves[0] == pytest.approx(original[0], rel=2e-3)
+        assert np.abs(waves[most + 1 :]).max(initial=0.0) < 1e-3 * abs(waves[0])
+        if most in (1, 3):
+            assert np.abs(waves[1] - original[1]) < 2e-2 * abs(original[1])
+
+
+def test_added_relief_is_removed_at_both_tips(pair):
+    """Teeth come too late by the amount where a tip touches: at A by that of the gear, at D of the pinion."""
+    cause = EXPLANATIONS["relief added"]
+    relieved = cause.change(Variant(pair), 0.7).pair
+    g = relieved.geometry
+    error = altered_elements(relieved, Physics()).error
+    step = 1e-6 * g.base_pitch
+    assert error(np.array([g.L_XA + step, g.L_XD - step])) == pytest.approx([7e-6, 7e-6], rel=1e-3)
+    assert error(np.array([0.5 * (g.L_XA + g.L_XD)])) == pytest.approx([0.0], abs=1e-12)
+    assert cause.shown(0.7) == pytest.approx(7.0)
+
+
+def test_roles(pair):
+    """The gear drives with the same power, and the mesh frequency stays."""
+    after = variant_of(pair, "driving gear", "the gear at its speed, called pinion").pair
+    before = pair.geometry
+    assert after.geometry.base_radius_pinion == pytest.approx(before.base_radius_gear)
+    assert after.geometry.mesh_period == pytest.approx(before.mesh_period)
+    forces = [one.operating.pinion_torque / one.geometry.base_radius_pinion for one in (pair, after)]
+    assert forces[0] == pytest.approx(forces[1])
+
+
+def test_a_static_curve_is_load_over_stiffness(pair):
+    """Without inertia and friction: dte = F/K."""
+    smooth = pair.with_({"friction.law": "none", "bearings.stiffness": 1e12})
+    variant = variant_of(smooth, "static curve", "static")
+    motion = motion_of(variant.pair, variant.physics, None)
+    force = pair.operating.pinion_torque / pair.geometry.base_radius_pinion
+    expected = force / motion.samples("mesh_stiffness")
+    difference = np.sqrt(np.mean((motion.samples("dte") - expected) ** 2))
+    assert difference < 0.05 * np.std(expected)
