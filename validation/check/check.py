@@ -33,7 +33,7 @@ from validation.check.overlay import figure_data
 from validation.check.problem import Problem
 from validation.check.reading.other_model import OtherModel, other_model
 from validation.check.reading.reader import read
-from validation.check.reference import lumped_motion, multibody_motion
+from validation.check.reference import REFERENCE_SAMPLES, lumped_motion, multibody_motion
 from validation.check.static import StaticRung, static_rung
 from validation.check.words import (
     ladder_words,
@@ -182,7 +182,11 @@ class Check:
                 f"programs of spurcheck differ by {percent(self.discrepancy)} here."
             )
             explained = self.ladder is not None and self.ladder.steps
-            return f"{sentence} {ladder_words(self.ladder)}" if explained and self.ladder else sentence
+            return (
+                f"{sentence} {ladder_words(self.ladder, self.limit)}"
+                if explained and self.ladder
+                else sentence
+            )
         sentences = [f"{who} {verb}{size}."]
         if self.failed is Rung.STATIC:
             sentences.append(static_failure(self.static))
@@ -320,7 +324,7 @@ def check(
     if not moving:
         return result
     curves = replace(source, channels=moving)
-    motion = lumped_motion(at_curves, curves.recurrence)
+    motion = lumped_motion(at_curves, curves.recurrence, samples=REFERENCE_SAMPLES)
     problem = Problem.of(at_curves, curves, motion, shift)
     more: tuple[str, ...] = ()
     if model is not None:
@@ -388,7 +392,11 @@ def _low_speed(model: OtherModel, pair: GearPair, at_speed: Curves) -> Problem |
             return None
         if np.array_equal(curves.places, at_speed.places):  # the function does not read the speed
             return None
-        problem = Problem.of(slow, replace(curves, channels=curves.of_quantity("dte")), lumped_motion(slow))
+        problem = Problem.of(
+            slow,
+            replace(curves, channels=curves.of_quantity("dte")),
+            lumped_motion(slow, samples=REFERENCE_SAMPLES),
+        )
         return problem if np.isfinite(problem.misfit.value) else None
     except (ValueError, NumericalError, ArithmeticError):
         return None

@@ -52,7 +52,7 @@ class Alternative:
     ----------
     name : name in the registry
     factor : value of the change: a factor, an angle, or the name of a choice
-    misfit : misfit after this change in place of the chosen one
+    misfit : misfit after this change in place of the chosen one [1]
     sentence : the explanation in words
     """
 
@@ -70,7 +70,7 @@ class Explanation:
     ----------
     name : name in the registry
     factor : value of the change: a factor, an angle, or the name of a choice
-    misfit : misfit after this step
+    misfit : misfit after this step [1]
     sentence : the explanation in words: "compatible with ...", never "is"
     alternatives : explanations within a factor 2 of the misfit of this step, best first
     """

@@ -30,7 +30,7 @@ from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 from validation.check.curve_orders import ChannelOrders
 from validation.check.explanations.cause import Cause, Choice, Kind, Variant
-from validation.check.explanations.of_reading import causes_of_channels
+from validation.check.explanations.misreadings import causes_of_channels
 from validation.check.explanations.physics import Physics, motion_of
 from validation.check.explanations.reading import Reading, read
 from validation.check.explanations.registry import EXPLANATIONS
@@ -38,8 +38,6 @@ from validation.check.mesh_frequency import SAME
 from validation.check.misfit import ChannelMisfit, Misfit
 from validation.check.motion_curves import MotionCurves
 from validation.check.problem import Problem
-from validation.check.settled import white_noise
-from validation.signals.complex_orders import complex_orders
 
 #: A free parameter counts as this much worse than a fixed value with the same misfit.
 FREE_IS_WORSE = 1.15
@@ -546,43 +544,9 @@ def _moved(steps: Sequence[Step], change: FloatArray) -> tuple[Step, ...]:
 
 
 def noise_of(problem: Problem) -> float:
-    """Return the misfit that noise alone makes: half the difference between two halves of the curves.
-
-    Orders above those that are compared are no noise, because they repeat with every cycle. Curves of less
-    than two cycles, and of teeth that differ, count as free of noise.
-    """
-    if problem.curves.role == "model" and problem.settled.change > _NOT_SETTLED:
-        return _white_noise(problem)  # what changes is a motion that fades
-    cycles = problem.cycles[problem.settled.used]
-    whole = int(np.ptp(cycles) + 0.01 + cycles[1] - cycles[0])
-    if whole < 2 or (problem.orders % 1.0).any():
-        return 0.0
-    middle = cycles[-1] - whole // 2
-    first = (cycles > middle - whole // 2) & (cycles <= middle)
-    squares = []
-    for row in problem.misfit.channels:
-        if row.channel.channel.tooth_pair is not None:
-            continue
-        values = row.channel.channel.values[problem.settled.used]
-        try:
-            halves = [
-                complex_orders(cycles[one], values[one], problem.orders) for one in (first, cycles > middle)
-            ]
-        except SpurcheckError:
-            return 0.0
-        squares.append((np.linalg.norm(halves[1].values - halves[0].values) / (2.0 * row.scale)) ** 2)
-    return float(np.sqrt(np.mean(squares))) if squares else 0.0
-
-
-def _white_noise(problem: Problem) -> float:
-    """Misfit by white noise: a complex amplitude of n samples has the variance 4 noise^2/n."""
-    squares = []
-    for row in problem.misfit.channels:
-        if row.channel.channel.tooth_pair is None:
-            values = row.channel.channel.values[problem.settled.used]
-            variance = 4.0 * row.channel.orders.orders.size / values.size
-            squares.append(variance * (white_noise(values) / row.scale) ** 2)
-    return float(np.sqrt(np.mean(squares))) if squares else 0.0
+    """Return the misfit that the noise of the curves makes."""
+    squares = [(row.channel.noise / row.scale) ** 2 for row in problem.misfit.channels]
+    return float(np.sqrt(np.mean(squares)))
 
 
 def residual_of(misfit: Misfit) -> FloatArray:

@@ -231,9 +231,12 @@ def dynamic_factor(pair: AnyPair, *, supports: Supports | None = None) -> float:
     return predict(pair, supports=supports).dynamic_factor
 
 
-def predicted(pair: GearPair) -> Prediction:
-    """Return the prediction for a pair at its operating point, on the shafts of a pair that has shafts."""
-    samples = _SAMPLES if pair.healthy is pair else None
+def predicted(pair: GearPair, samples_of_like_teeth: int = _SAMPLES) -> Prediction:
+    """Return the prediction for a pair at its operating point, on the shafts of a pair that has shafts.
+
+    ``samples_of_like_teeth``: samples in a mesh cycle where all teeth are alike.
+    """
+    samples = samples_of_like_teeth if pair.healthy is pair else None
     try:
         motion = periodic_motion(pair, "unilateral", samples_per_cycle=samples)
     except NumericalError as error:

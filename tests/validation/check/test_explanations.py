@@ -18,7 +18,7 @@ from lumped.schema.bodies import bodies_of
 from tests.unlike_pairs import unlike_pair
 from validation.check.curves import Channel, Curves
 from validation.check.explanations.cause import Variant
-from validation.check.explanations.of_reading import causes_of_channels
+from validation.check.explanations.misreadings import causes_of_channels
 from validation.check.explanations.physics import motion_of
 from validation.check.explanations.registry import EXPLANATIONS
 from validation.check.ladder import climb

@@ -129,7 +129,7 @@ def test_the_command_prints_bounds_and_writes_a_chart(tmp_path):
 
 
 def test_the_command_accepts_neutral_systems_and_no_others_without_damping(tmp_path):
-    """Two oscillators, coupled by cos: neutral with symmetric matrices at 4 Hz, unstable at a sum of frequencies."""
+    """Two oscillators coupled by cos: neutral with symmetric matrices at 4 Hz, unstable at a sum."""
     matrices = {
         "M": np.eye(2),
         "K": np.diag([100.0, 300.0]),

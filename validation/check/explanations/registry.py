@@ -9,11 +9,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
+from validation.check.explanations.alterations import OF_MODEL
 from validation.check.explanations.cause import Cause
-from validation.check.explanations.of_design import OF_DESIGN
-from validation.check.explanations.of_model import OF_MODEL
-from validation.check.explanations.of_pair import OF_PAIR
-from validation.check.explanations.of_reading import OF_READING
+from validation.check.explanations.design_inputs import OF_DESIGN
+from validation.check.explanations.inputs import OF_PAIR
+from validation.check.explanations.misreadings import OF_READING
 
 #: Name -> cause, the cheapest first: a reading costs no motion.
 EXPLANATIONS: Mapping[str, Cause] = MappingProxyType(

@@ -15,7 +15,7 @@ from lumped.schema.bodies import bodies_of, solid_disc
 from lumped.schema.pair import GearPair
 from lumped.stiffness.registry import MODELS
 from validation.check.explanations.cause import Cause, Choice, Kind, Variant
-from validation.check.explanations.of_design import has_relief
+from validation.check.explanations.design_inputs import has_relief
 from validation.check.problem import Problem
 
 #: Trial factors: of a stiffness, of a load or a mass, of a damper, of a bearing.

@@ -14,7 +14,7 @@ from lumped.fields.units import to_stated
 from lumped.schema.bodies import bodies_of
 from lumped.schema.pair import GearPair
 from validation.check.explanations.cause import Cause, Choice, Kind, Variant
-from validation.check.explanations.of_reading import exchanged_gears
+from validation.check.explanations.misreadings import exchanged_gears
 from validation.check.problem import Problem
 
 GEARS = ("pinion", "gear")
