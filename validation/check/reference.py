@@ -18,8 +18,8 @@ from validation.check.motion_curves import MotionCurves
 from validation.prediction.motion import predicted
 
 #: Samples in a mesh cycle of the motions that a search tries, and of the reference. With prescribed contact
-#: the force of a tooth damper has narrow peaks where pairs meet: in 512 samples a small motion at low speed had
-#: wrong orders of the mesh force.
+#: the force of a tooth damper has narrow peaks where pairs meet: 512 samples gave wrong orders of the mesh
+#: force for a small motion at low speed.
 _TRIAL_SAMPLES = 512
 REFERENCE_SAMPLES = 2048
 #: Samples in a mesh cycle of the multibody model: order 12 is right to 1e-4.
