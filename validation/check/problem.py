@@ -131,7 +131,8 @@ class Problem:
             return white
         if channel.tooth_pair is not None:
             return white
-        half = int(np.ptp(cycles) + 1e-6) // (2 * period) * period
+        step = float(np.median(np.diff(cycles)))
+        half = int(np.ptp(cycles) + 1.01 * step) // (2 * period) * period
         if half < 1:
             return 0.0
         ends = (cycles[-1] - half, cycles[-1] - 2 * half)
