@@ -113,5 +113,6 @@ def test_a_static_curve_is_load_over_stiffness(pair):
     motion = motion_of(variant.pair, variant.physics, None)
     force = pair.operating.pinion_torque / pair.geometry.base_radius_pinion
     expected = force / motion.samples("mesh_stiffness")
-    difference = np.sqrt(np.mean((motion.samples("dte") - expected) ** 2))
-    assert difference < 0.05 * np.std(expected)
+    # Behind each jump of the stiffness the motion still rings at orders above the natural frequency.
+    waves, static = (np.fft.rfft(values)[1:7] for values in (motion.samples("dte"), expected))
+    assert np.linalg.norm(waves - static) < 0.05 * np.linalg.norm(static)

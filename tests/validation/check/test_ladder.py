@@ -160,8 +160,9 @@ def test_the_budget_cuts_the_search(pair):
 
 def test_residual_is_the_misfit(pair):
     other = lumped_motion(pair.with_({"mesh.stiffness_factor": 2.0, "operating.pinion_torque": 80.0}))
-    problem = Problem.of(pair, sampled(other, CHANNELS), lumped_motion(pair))
-    assert np.linalg.norm(residual_of(problem.misfit)) == pytest.approx(problem.misfit.value, rel=1e-9)
+    problem = Problem.of(pair, sampled(other, CHANNELS, cycles=4), lumped_motion(pair))
+    # Only the misfit leaves out the expected square of the noise, of which orders above 12 leave a little.
+    assert np.linalg.norm(residual_of(problem.misfit)) == pytest.approx(problem.misfit.value, rel=1e-3)
 
 
 def test_tooth_pairs_count_as_one_channel(pair):

@@ -1,0 +1,41 @@
+"""Is the mesh frequency seen where another frequency has orders in common, or the sampling rate is misstated?"""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import lumped
+from tests.validation.check.test_explanations import COULOMB, sampled
+from validation.check.mesh_frequency import mesh_frequency
+from validation.check.reference import lumped_motion
+
+
+@pytest.fixture(scope="module")
+def pair():
+    """16 and 24 teeth: three mesh cycles at one gear's speed are two at the other's."""
+    return lumped.load_gear_pair("fzg_c").with_({**COULOMB, "mesh.stiffness": {"model": "rectangular"}})
+
+
+def curves_of(pair):
+    """Six mesh cycles of the motion."""
+    return sampled(lumped_motion(pair), ("dte", "x_p", "bearing_force_y_p"), cycles=6, per_cycle=311)
+
+
+def test_speed_of_the_gear(pair):
+    speed = pair.operating.pinion_speed * 30.0 / np.pi
+    faster = pair.with_({"operating.pinion_speed": speed * 24 / 16})
+    frequency = mesh_frequency(curves_of(faster), pair)
+    assert frequency.factor == pytest.approx(1.5, rel=1e-3)
+    assert "gear" in frequency.cause
+
+
+def test_sampling_rate_misstated(pair):
+    curves = curves_of(pair)
+    frequency = mesh_frequency(replace(curves, places=curves.places * 48.0 / 44.1), pair)
+    assert frequency.factor == pytest.approx(44.1 / 48.0, rel=1e-3)
+    assert "sampling rate" in frequency.cause
+
+
+def test_the_true_frequency_stays(pair):
+    assert mesh_frequency(curves_of(pair), pair).factor == pytest.approx(1.0, abs=1e-6)
