@@ -1,4 +1,4 @@
-"""Is the mesh frequency seen where another frequency has orders in common, or the sampling rate is misstated?"""
+"""Is the mesh frequency seen where another has orders in common, or the sampling rate is misstated?"""
 
 from dataclasses import replace
 
