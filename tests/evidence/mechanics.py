@@ -19,6 +19,7 @@ from lumped.losses import loss_factor, ohlendorf_of, quasi_static_losses
 from lumped.model.averaged import averaged_matrix, modes
 from lumped.model.periodic_system import periodic_system
 from lumped.model.powers import mean_powers
+from lumped.model.results import plain
 from lumped.model.steady import PeriodicSolution, periodic_cycle, periodic_solution
 from lumped.quasi_static.contacts import mesh_elements
 from lumped.quasi_static.load_sharing import share_load
@@ -44,7 +45,8 @@ def mechanics(pair: GearPair) -> Iterator[Check]:
 def _orders(pair: GearPair) -> Check:
     phase = 2.0 * np.pi * np.arange(64) / 64
     values = 3.0 + 2.0 * np.cos(phase + 0.4) + 0.5 * np.sin(3.0 * phase)
-    motion = Prediction(pair, Motion.UNILATERAL, xr.Dataset({"dte": ("time", values)}), 0.0, True, 1, 1.0)
+    wave = plain(xr.Dataset({"dte": ("time", values)}, {"time": phase}))
+    motion = Prediction(pair, Motion.UNILATERAL, wave, 0.0, True, 1, {})
     both = list(zip(motion.orders_of("dte")[:4] + 1.0, (3.0, 1.0, 1.5, 1.0), strict=True))
     return rows("amplitudes by mesh order", "those of a sum of cosines", 1e-12, both)
 

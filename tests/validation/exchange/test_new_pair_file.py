@@ -180,7 +180,7 @@ THIN = {"gear.bore": 82.0}  # root radius 48.1 mm over 41 mm: 1.17
 )
 def test_the_teeth_of_a_new_pair_are_finite_elements_but_for_thin_rims(stiffness, model, source, monkeypatch):
     # What writes a file solves nothing.
-    monkeypatch.setattr("lumped.stiffness.finite_elements.flank_compliance", None)
+    monkeypatch.setattr("lumped.elasticity.gear.flank_compliance", None)
     drawing = {"teeth": "19/41", "basic_rack.module": 2.5, "gears.face_width": 20.0}
     drawing |= {"operating.pinion_speed": 1450.0, "operating.pinion_torque": 80.0}
     pair = load_gear_pair(tomllib.loads(new_pair_text("x", drawing | stiffness)))

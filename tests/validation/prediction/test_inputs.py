@@ -7,6 +7,7 @@ import pytest
 
 import lumped
 from floquet.gear.axes import GEAR_AXES
+from lumped.elasticity import gear as elasticity
 from lumped.errors import ParameterError
 from lumped.gear_geometry.profile_shift import distance_without_backlash
 from lumped.schema.bodies import bodies
@@ -351,9 +352,9 @@ def test_a_stated_tip_replaces_the_default_and_takes_few_values_too():
 def test_the_finite_elements_of_a_tip_are_solved_once_for_each_value(monkeypatch):
     """Samples of 32 machines need no more solutions than the values of both tips."""
     solved = []
-    solve = finite_elements.flank_compliance
+    solve = elasticity.flank_compliance
     monkeypatch.setattr(
-        finite_elements,
+        elasticity,
         "flank_compliance",
         lambda body: solved.append((body.profile.teeth, body.tip)) or solve(body),
     )

@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 import lumped
 from validation.exchange.new_pair_file import new_pair_text
 from validation.plots.style import save
-from validation.reporting import build, pictures
+from validation.reporting import build
 from validation.reporting.effort import Effort
 from validation.reporting.results import Results
 
@@ -153,7 +153,7 @@ def write_report(
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(build, "FULL", SMALL)
-        patch.setattr(pictures, "save", keep)
+        patch.setattr("validation.plots.style.save", keep)
         if results is not None:
             patch.setattr(build, "Results", lambda *_, **__: results)
         if same is not None:
