@@ -34,6 +34,7 @@ from validation.check.problem import Problem
 from validation.check.reading.other_model import OtherModel, other_model
 from validation.check.reading.reader import read
 from validation.check.reference import REFERENCE_SAMPLES, lumped_motion, multibody_motion
+from validation.check.samples import difference_at_no_order, peaks_to_peak
 from validation.check.static import StaticRung, static_rung
 from validation.check.words import (
     ladder_words,
@@ -211,12 +212,13 @@ class Check:
         by_second = [math.nan] * len(rows)
         if self.second is not None:
             by_second = [row.total for row in self.second.channels]
+        peaks = [peaks_to_peak(self.problem, row) for row in rows]
         worst = [int(np.abs(row.channel.orders.values - row.ours.values).argmax()) for row in rows]
         columns = {
             "quantity": ([row.channel.channel.quantity for row in rows], "1", "quantity"),
             "units": ([row.channel.channel.kind.unit for row in rows], "1", "SI unit of the channel"),
-            "their_peak_to_peak": ([row.channel.orders.peak_to_peak for row in rows], _BY_CHANNEL, "theirs"),
-            "our_peak_to_peak": ([row.ours.peak_to_peak for row in rows], _BY_CHANNEL, "ours"),
+            "their_peak_to_peak": ([peak.theirs for peak in peaks], _BY_CHANNEL, "theirs"),
+            "our_peak_to_peak": ([peak.ours for peak in peaks], _BY_CHANNEL, "ours"),
             "their_mean": ([row.channel.orders.mean for row in rows], _BY_CHANNEL, "their mean"),
             "our_mean": ([row.ours.mean for row in rows], _BY_CHANNEL, "our mean"),
             "misfit": ([row.total for row in rows], "1", "misfit of orders and mean"),
@@ -230,6 +232,11 @@ class Check:
                 [float(row.ours.orders[j]) for row, j in zip(rows, worst, strict=True)],
                 "1",
                 "mesh order that differs most",
+            ),
+            "at_no_order": (
+                [difference_at_no_order(self.problem, row) for row in rows],
+                "1",
+                "difference at none of the compared orders, over the motion; no part of the misfit",
             ),
         }
         return labelled_dataset(
@@ -338,7 +345,7 @@ def check(
         problem=problem,
         second=second,
         discrepancy=discrepancy,
-        remarks=(*source.remarks, *_remarks(problem), *more),
+        remarks=(*source.remarks, *_remarks(problem), *_remark_on_no_order(problem, allowed), *more),
     )
     agree = result.failed is None and all(row.total <= allowed for row in result.nearer.channels)
     if not explain or agree:
@@ -422,6 +429,23 @@ def _second(problem: Problem, motion: MotionCurves) -> tuple[Misfit | None, floa
     rows = problem.misfit.channels
     ours = tuple(row.channel._replace(orders=row.ours) for row in rows)
     return misfit, problem.misfit_with(other, ours).value
+
+
+def _remark_on_no_order(problem: Problem, limit: float) -> tuple[str, ...]:
+    """Sentence on channels that agree at the compared orders, and differ at none of them by the limit."""
+    rests = [
+        (row.channel.channel.name, difference_at_no_order(problem, row))
+        for row in problem.misfit.channels
+        if row.total <= limit
+    ]
+    above = [f"{name} by {percent(rest)}" for name, rest in rests if rest > limit]
+    if not above:
+        return ()
+    return (
+        f"At frequencies that are none of the compared mesh orders, {problem.orders.min():.3g} to "
+        f"{problem.orders.max():.3g}, the motions differ too: {', '.join(above)}. This is no part of "
+        "the misfit.",
+    )
 
 
 def _remarks(problem: Problem) -> tuple[str, ...]:

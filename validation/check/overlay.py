@@ -10,6 +10,7 @@ import xarray as xr
 from lumped.errors import NumericalError
 from lumped.labelling import labelled_dataset
 from lumped.typing import FloatArray
+from validation.check.curve_orders import without_ramp
 from validation.check.curves import Channel
 from validation.check.origin import origin
 from validation.check.problem import Problem
@@ -92,6 +93,8 @@ def _samples(problem: Problem, channel: Channel, with_mean: bool) -> _Samples:
     cycles = problem.cycles[used] + problem.misfit.shift
     motion = problem.motion.mean_cycle()
     theirs = channel.values[used]
+    if channel.kind.is_rotation:
+        theirs = without_ramp(problem.cycles[used], theirs)
     phase = np.mod(cycles, 1.0)
     inside = np.ones(cycles.shape, dtype=bool)
     reach = 1.0

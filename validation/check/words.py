@@ -12,6 +12,7 @@ from validation.check.static import StaticRow, StaticRung
 from validation.files.formatting import percent, quantity
 
 __all__ = [
+    "FAR",
     "ladder_words",
     "low_speed_failure",
     "motion_failure",
@@ -23,7 +24,7 @@ __all__ = [
 ]
 
 #: Explanations that leave more than this many times the limit explain little.
-_FAR = 3.0
+FAR = 3.0
 #: Most static quantities, and most channels, in a sentence.
 _MOST = 3
 
@@ -64,7 +65,7 @@ def ladder_words(ladder: Ladder, limit: float) -> str:
         return "No named explanation makes the difference much smaller."
     last = ladder.steps[-1].misfit
     first = ladder.steps[0]
-    if last > _FAR * limit:
+    if last > FAR * limit:
         causes = "; ".join(step.sentence.removeprefix("Compatible with ") for step in ladder.steps)
         return f"No named explanation brings the misfit below {percent(last)}; the nearest is {causes}."
     sentences = [f"{first.sentence}: the misfit is then {percent(first.misfit)}."]

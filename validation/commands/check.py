@@ -106,17 +106,11 @@ def _show(result: Check) -> None:
     console = stdout()
     console.print(result.words, style="bold")
     if result.problem is not None:
-        rows = [
-            (
-                row.channel.channel.name,
-                quantity(row.channel.orders.peak_to_peak, row.channel.channel.kind.unit, 4),
-                quantity(row.ours.peak_to_peak, row.channel.channel.kind.unit, 4),
-                percent(row.total),
-                "agrees" if row.total <= result.limit else "differs",
-            )
-            for row in result.nearer.channels
-        ]
-        show(peaks_words(result), "channel | >theirs, peak to peak | >spurcheck | >misfit | ", rows)
+        columns = "channel | >theirs, peak to peak | >spurcheck | >misfit | "
+        show(peaks_words(result), columns, _channel_rows(result))
+        means = _mean_rows(result)
+        if means:
+            show("", "channel | >theirs | >spurcheck | >difference over the static value", means)
     if result.over_speed is not None:
         from validation.reporting.check_content import speed_rows
 
@@ -150,6 +144,46 @@ def _show(result: Check) -> None:
             steps.append((str(number), step.sentence, percent(step.misfit)))
             steps += [("", f"or: {other.sentence}", percent(other.misfit)) for other in step.alternatives]
         show("", "step | compatible with | >misfit then", steps)
+
+
+def _channel_rows(result: Check) -> list[tuple[str, ...]]:
+    """Rows of the channels: peaks to peak, misfit and verdict."""
+    from validation.check.samples import peaks_to_peak
+    from validation.check.words import percent
+    from validation.files.formatting import quantity
+
+    assert result.problem is not None
+    rows = []
+    for row in result.nearer.channels:
+        unit = row.channel.channel.kind.unit
+        peaks = peaks_to_peak(result.problem, row)
+        rows.append(
+            (
+                row.channel.channel.name,
+                quantity(peaks.theirs, unit, 4),
+                quantity(peaks.ours, unit, 4),
+                percent(row.total),
+                "agrees" if row.total <= result.limit else "differs",
+            )
+        )
+    return rows
+
+
+def _mean_rows(result: Check) -> list[tuple[str, ...]]:
+    """Rows of the channels whose means differ by more than the limit: both means, and the difference."""
+    from validation.check.words import percent
+    from validation.files.formatting import quantity
+
+    return [
+        (
+            f"{row.channel.channel.name}, mean",
+            quantity(row.channel.orders.mean, row.channel.channel.kind.unit, 4),
+            quantity(row.ours.mean, row.channel.channel.kind.unit, 4),
+            percent(row.mean),
+        )
+        for row in result.nearer.channels
+        if row.mean > result.limit
+    ]
 
 
 def _as_json(result: Check) -> dict[str, Any]:

@@ -16,8 +16,9 @@ from validation.check.over_speed import SpeedMisfit
 from validation.check.overlay import figure_data
 from validation.check.problem import Problem
 from validation.check.quantities import QUANTITIES
+from validation.check.samples import peaks_to_peak
 from validation.check.static import StaticRow
-from validation.check.words import percent, static_words, subject
+from validation.check.words import FAR, percent, static_words, subject
 from validation.plots.check import ladder_figure, motion_figure, speed_figure
 from validation.reporting.blocks import (
     Badge,
@@ -34,6 +35,8 @@ from validation.reporting.blocks import (
 
 #: Orders of a channel in the table, the largest first.
 _MOST_ORDERS = 6
+#: Sentence on a search that its budget ended.
+_ENDED = " The search was ended by its budget: --budget gives it more seconds."
 #: Most things to look at first.
 _MOST_FIRST = 4
 
@@ -152,9 +155,13 @@ def motion_content(check: Check) -> Content:
 
 
 def peaks_words(check: Check) -> str:
-    """Sentence on the peaks to peak: they are those of the compared orders."""
+    """Sentence on the peaks to peak, and on the orders of the misfit."""
     highest = max((float(row.ours.orders.max(initial=0.0)) for row in check.nearer.channels), default=0.0)
-    return f"Peaks to peak are those of the mesh orders up to {highest:.4g}."
+    if check.role == "measurement":
+        return f"Peaks to peak and misfit are those of the mesh orders up to {highest:.4g}."
+    return (
+        f"Peaks to peak are those of the samples. The misfit is that of the mesh orders up to {highest:.4g}."
+    )
 
 
 def _shift_words(problem: Problem) -> str:
@@ -185,6 +192,8 @@ def _channel_table(check: Check, rows: Sequence[ChannelMisfit]) -> Table:
     def quantity_of(row: ChannelMisfit, value: float) -> Quantity:
         return Quantity(value, row.channel.channel.kind.unit)
 
+    assert check.problem is not None
+    peaks = {row.channel.channel.name: peaks_to_peak(check.problem, row) for row in rows}
     return table_of(
         "channels",
         "Channels: peak to peak, mean and misfit.",
@@ -195,10 +204,12 @@ def _channel_table(check: Check, rows: Sequence[ChannelMisfit]) -> Table:
             Column[ChannelMisfit](
                 "theirs",
                 "theirs, peak to peak",
-                lambda row: quantity_of(row, row.channel.orders.peak_to_peak),
+                lambda row: quantity_of(row, peaks[row.channel.channel.name].theirs),
             ),
             Column[ChannelMisfit](
-                "ours", "spurcheck, peak to peak", lambda row: quantity_of(row, row.ours.peak_to_peak)
+                "ours",
+                "spurcheck, peak to peak",
+                lambda row: quantity_of(row, peaks[row.channel.channel.name].ours),
             ),
             Column[ChannelMisfit](
                 "their_mean",
@@ -283,15 +294,21 @@ def ladder_content(problem: Problem, ladder: Ladder, limit: float) -> Content:
     who = subject(problem.curves.role)
     if not ladder.steps:
         words = "No named explanation makes the difference much smaller."
+        if not ladder.complete:
+            words += _ENDED
         return Content(words, (Text(f"{ladder.runs} motions were computed."),))
     last = ladder.steps[-1].misfit
     count = f"{len(ladder.steps)} {'change brings' if len(ladder.steps) == 1 else 'changes bring'}"
-    words = (
-        f"{count} the misfit from "
-        f"{percent(ladder.start)} to {percent(last)}. {who} is compatible with them; they are not proven."
-    )
+    words = f"{count} the misfit from {percent(ladder.start)} to {percent(last)}."
+    if last > FAR * limit:
+        words += f" That is far above the limit, {percent(limit)}: none of them explains the difference."
+    else:
+        proof = "it; it is" if len(ladder.steps) == 1 else "them; they are"
+        words += f" {who} is compatible with {proof} not proven."
+        if last > limit:
+            words += f" The misfit stays above the limit, {percent(limit)}: something else differs too."
     if not ladder.complete:
-        words += " The search was ended by its budget: --budget gives it more seconds."
+        words += _ENDED
     items = []
     for number, step in enumerate(ladder.steps, start=1):
         items.append(_StepRow(str(number), step.sentence, step.factor, step.misfit))

@@ -58,7 +58,7 @@ def test_curves_that_agree_end_with_0(files):
     assert text.startswith("Your model agrees: misfit ")
     found = cells(text)
     assert [found[name][-1] for name in CHANNELS] == len(CHANNELS) * ["agrees"]
-    assert "Peaks to peak are those of the mesh orders up to 12." in text
+    assert "Peaks to peak are those of the samples." in text
 
 
 def test_curves_that_differ_end_with_4_and_the_table_says_where(files):

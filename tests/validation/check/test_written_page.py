@@ -170,8 +170,6 @@ def check_channels(theirs, ours, multibody_values):
         "mesh_force": "mesh force, all tooth pairs together",
     }  # fmt: skip
 
-    phases = 2j * np.pi * np.multiply.outer(np.arange(4096) / 4096, np.arange(1, 13))
-
     def check(written):
         rows = written.table("channels")
         assert [row["channel"] for row in rows] == list(CHANNELS)
@@ -179,8 +177,8 @@ def check_channels(theirs, ours, multibody_values):
             name = row["channel"]
             unit = "N" if name == "mesh_force" else "m"
             assert row["quantity"] == words[name]
-            for key, orders in (("theirs", fitted(theirs[name])), ("ours", fourier(ours[name]))):
-                curve = (np.exp(phases) @ orders).real
+            # Ours is taken at the times of the samples, which may miss its extremes by a little.
+            for key, curve in (("theirs", theirs[name][403:]), ("ours", ours[name])):
                 assert row[key] == {"value": pytest.approx(np.ptp(curve), rel=0.005), "unit": unit}
             for key, values in (("their_mean", theirs[name][403:]), ("our_mean", ours[name])):
                 assert row[key] == {"value": pytest.approx(np.mean(values), rel=0.005), "unit": unit}
@@ -360,9 +358,8 @@ def test_the_common_shift_is_that_of_the_samples(pages):
 
 
 def test_the_page_says_of_which_orders_the_peaks_to_peak_are(pages):
-    assert "Peaks to peak are those of the mesh orders up to 12." in pages["right"].page.replace(
-        "\u00a0", " "
-    )
+    page = pages["right"].page.replace("\u00a0", " ")
+    assert "Peaks to peak are those of the samples. The misfit is that of the mesh orders up to 12." in page
 
 
 def test_a_folder_in_use_is_refused_and_force_replaces_it(tmp_path):
