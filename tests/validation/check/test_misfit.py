@@ -46,6 +46,20 @@ def test_one_percent_of_noise_is_no_difference(pair):
     assert problem(pair, noise=0.01, cycles=12).misfit.value < 0.01
 
 
+def test_strong_noise_is_taken_from_the_misfit():
+    # The square of the difference has the expected square of the noise; what is left has a mean near 0.
+    pair = unlike_pair(NAMES[0])
+    squares, noises = [], []
+    for seed in range(8):
+        one = problem(pair, quantities=("dte",), noise=0.1, cycles=6, seed=seed).misfit.channels[0]
+        raw = np.linalg.norm(one.channel.orders.values - one.ours.values)
+        squares.append(raw**2 / one.channel.noise**2)
+        noises.append(one.motion * one.scale / one.channel.noise)
+    # 12 complex differences each: a mean of 8 has a standard deviation of 0.1; halves estimate less well.
+    assert 0.7 < np.mean(squares) < 1.5
+    assert np.mean(noises) < 0.6 * np.sqrt(np.mean(squares))
+
+
 def test_a_motion_at_rest_has_a_misfit_of_one(pair):
     still = problem(pair, change=lambda name, values, time: np.full_like(values, values.mean()))
     assert [row.motion for row in still.misfit.channels] == pytest.approx(len(SEVERAL) * [1.0], abs=0.02)
@@ -86,9 +100,10 @@ def test_a_mean_that_an_export_removed_is_not_compared(pair):
     removed = problem(pair, change=lambda name, values, time: values - values.mean())
     assert removed.misfit.value < 5e-3
     assert not any(row.compares_mean for row in removed.misfit.channels if row.channel.channel.name == "dte")
-    shifted = problem(pair, change=lambda name, values, time: values + 0.1 * values.mean())
-    by_name = {row.channel.channel.name: row.mean for row in shifted.misfit.channels}
-    assert by_name["dte"] == pytest.approx(0.1, rel=0.05)
+    for share in (0.1, -0.1):
+        shifted = problem(pair, change=lambda name, values, time, share=share: values + share * values.mean())
+        by_name = {row.channel.channel.name: row.mean for row in shifted.misfit.channels}
+        assert by_name["dte"] == pytest.approx(0.1, rel=0.05)
 
 
 @pytest.mark.parametrize(("factor", "cause"), [
