@@ -34,7 +34,7 @@ from validation.check.problem import Problem
 from validation.check.reading.other_model import OtherModel, other_model
 from validation.check.reading.reader import read
 from validation.check.reference import REFERENCE_SAMPLES, lumped_motion, multibody_motion
-from validation.check.samples import difference_at_no_order, peaks_to_peak
+from validation.check.samples import difference_at_no_order, peaks_to_peak, step_of_values
 from validation.check.static import StaticRung, static_rung
 from validation.check.words import (
     ladder_words,
@@ -45,6 +45,7 @@ from validation.check.words import (
     static_failure,
     subject,
 )
+from validation.files.formatting import quantity
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -58,6 +59,8 @@ _SETTLED = 0.01
 _RESOLVED = 0.01
 #: A rotation drifts where it leaves its constant speed by this share of its vibration.
 _DRIFTS = 0.1
+#: Steps of written values above this share of the peak to peak are worth a sentence.
+_COARSE_STEP = 0.01
 #: Mesh frequency of the rung at low speed over the lowest natural frequency: the motion is nearly static.
 _LOW = 1.0 / 12.0
 #: Unit attribute of a variable whose channels differ in their unit.
@@ -469,6 +472,13 @@ def _remarks(problem: Problem) -> tuple[str, ...]:
             f"{', '.join(drifting)}: the speed drifts, because the torques do not balance. A brake torque of "
             f"{brake:.5g} N m holds it. The drift is not compared."
         )
+    for channel in problem.curves.channels:
+        step = step_of_values(channel.values)
+        if step > _COARSE_STEP * float(np.ptp(channel.values)):
+            remarks.append(
+                f"{channel.name} is written in steps of {quantity(step, channel.kind.unit, 3)}, "
+                f"{percent(step / float(np.ptp(channel.values)))} of its peak to peak. Write more digits."
+            )
     removed = [
         row.channel.channel.name
         for row in problem.misfit.channels

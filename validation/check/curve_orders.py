@@ -10,13 +10,14 @@ Sources: docs/how_to/check_your_model.md, "Orders".
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from lumped.errors import ParameterError, refuse
 from lumped.schema.pair import GearPair
-from lumped.typing import FloatArray
+from lumped.typing import ComplexArray, FloatArray
 from validation.check.curves import Channel
 from validation.check.motion_curves import MotionCurves
 from validation.check.quantities import PAIR_LABELS
@@ -54,11 +55,17 @@ class ChannelOrders(NamedTuple):
     orders : its orders
     noise : root of the expected square that white noise of the samples adds to all orders, in the unit of
         the channel
+    gains : (m,) by which a filter of the recording multiplies our orders; None: no filter
     """
 
     channel: Channel
     orders: ComplexOrders
     noise: float = 0.0
+    gains: ComplexArray | None = None
+
+    def recorded(self, ours: ComplexOrders) -> ComplexOrders:
+        """Return orders of ours through the filter of the recording."""
+        return ours if self.gains is None else replace(ours, values=ours.values * self.gains)
 
 
 def resolved_orders(cycles: FloatArray, period: int = 1, most: int = MESH_ORDERS) -> int:

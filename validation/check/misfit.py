@@ -114,7 +114,7 @@ def misfit_of(
         whole period
     means : whether the means of the channels are compared: sensors have no zero
     """
-    ours = [orders_of_motion(motion, one.channel, one.orders) for one in theirs]
+    ours = [one.recorded(orders_of_motion(motion, one.channel, one.orders)) for one in theirs]
     statics = [static_value(one.channel.kind, motion) for one in theirs]
     scales = [
         max(one.orders.size, other.size, LEAST * static)

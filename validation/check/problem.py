@@ -208,6 +208,7 @@ class Problem:
             if channel.tooth_pair is None and row.ours.orders.size == count:
                 coefficients = fit @ motion.at(channel.quantity, cycles)
                 values = coefficients[1 : count + 1] + 1j * coefficients[count + 1 :]
-                row = row._replace(ours=replace(row.ours, values=values, mean=float(coefficients[0])))
+                ours = replace(row.ours, values=values, mean=float(coefficients[0]))
+                row = row._replace(ours=row.channel.recorded(ours))
             channels.append(row)
         return replace(misfit, channels=tuple(channels))

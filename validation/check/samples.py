@@ -16,6 +16,12 @@ from validation.check.misfit import ChannelMisfit
 from validation.check.problem import Problem
 from validation.signals.complex_orders import complex_orders
 
+#: Most different values of rounded samples, how often each is repeated at least in the mean, and how near
+#: to a whole number the multiples of the step are.
+_FEW_VALUES = 100
+_REPEATED = 4
+_WHOLE = 0.02
+
 
 class PeaksToPeak(NamedTuple):
     """Largest less smallest value of a channel, in the SI unit of the channel.
@@ -54,6 +60,20 @@ def samples_of(problem: Problem, channel: Channel) -> Samples:
     if channel.kind.is_rotation:
         theirs, ours = without_ramp(cycles, theirs), without_ramp(cycles, ours)
     return Samples(cycles, theirs, ours)
+
+
+def step_of_values(values: FloatArray) -> float:
+    """Return the step in which values are written, as with few digits; 0 where no step shows.
+
+    A step shows where many samples have few different values, and every difference of two values is a
+    multiple of the smallest one.
+    """
+    different = np.unique(values)
+    if different.size < 3 or different.size > _FEW_VALUES or values.size < _REPEATED * different.size:
+        return 0.0
+    gaps = np.diff(different)
+    multiples = gaps / gaps.min()
+    return float(gaps.min()) if np.abs(multiples - np.round(multiples)).max() < _WHOLE else 0.0
 
 
 def peaks_to_peak(problem: Problem, row: ChannelMisfit) -> PeaksToPeak:

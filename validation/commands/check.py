@@ -106,8 +106,8 @@ def _show(result: Check) -> None:
     console = stdout()
     console.print(result.words, style="bold")
     if result.problem is not None:
-        columns = "channel | >theirs, peak to peak | >spurcheck | >misfit | "
-        show(peaks_words(result), columns, _channel_rows(result))
+        headings = "channel | >theirs, peak to peak | >spurcheck | >misfit | "
+        show(peaks_words(result), headings, _channel_rows(result))
         means = _mean_rows(result)
         if means:
             show("", "channel | >theirs | >spurcheck | >difference over the static value", means)
@@ -153,7 +153,7 @@ def _channel_rows(result: Check) -> list[tuple[str, ...]]:
     from validation.files.formatting import quantity
 
     assert result.problem is not None
-    rows = []
+    rows: list[tuple[str, ...]] = []
     for row in result.nearer.channels:
         unit = row.channel.channel.kind.unit
         peaks = peaks_to_peak(result.problem, row)

@@ -110,6 +110,7 @@ FIXED = {
     "constant speed of a gear": ("unlike", "the gear"),
     "static curve": ("unlike", None),
     "friction over the path": ("unlike", "without reversal"),
+    "number of teeth": ("unlike", "gear: +1"),
 }
 #: Further fixed values of these causes: name of the cause, label.
 FURTHER = (
@@ -118,6 +119,8 @@ FURTHER = (
     ("stiffness over the mesh cycle", "whole mesh for each pair"),
     ("stiffness over the mesh cycle", "first harmonic"),
     ("stiffness over the mesh cycle", "two levels"),
+    ("stiffness over the mesh cycle", "levels exchanged"),
+    ("friction over the path", "middle of the path"),
 )
 FREE = {
     "mesh stiffness": 1.17,
@@ -145,6 +148,7 @@ FREE = {
     "centre distance": 1.003,
     "module": 1.07,
     "friction coefficient": 1.5,
+    "variation of the mesh stiffness": 0.5,
     "relief added": 0.5,
     "amount of relief": 1.6,
 }
@@ -162,6 +166,11 @@ READINGS = {
     "another quantity": lambda curves: renamed(curves, "x_p", "bearing_force_x_p"),
     "time reversed": lambda curves: changed(curves, CHANNELS, lambda v: v[::-1]),
     "delay of a channel": lambda curves: changed(curves, ("dte",), lambda v: np.roll(v, 29)),
+    "moving average": lambda curves: changed(curves, CHANNELS, averaged),
+    "axes of the bearing forces": lambda curves: turned(
+        curves, 70.0, ("bearing_force_x_p", "bearing_force_y_p")
+    ),
+    "axes of all channels": lambda curves: turned(curves, -20.0, *AXES),
     "low-pass filter": lambda curves: changed(curves, CHANNELS, low_passed),
 }
 #: Cases with a test of their own.
@@ -193,6 +202,25 @@ def low_passed(values, cutoff=3.0, cycles=2):
     """Values through a low-pass filter of first order, by their Fourier series."""
     orders = np.fft.rfftfreq(values.size, cycles / values.size)
     return np.fft.irfft(np.fft.rfft(values) / (1.0 + 1j * orders / cutoff), values.size)
+
+
+def averaged(values, window=0.15, cycles=2):
+    """Values through a moving average over a window [mesh cycles], as a circular sum."""
+    half = round(0.5 * window * values.size / cycles)
+    return np.mean([np.roll(values, shift) for shift in range(-half, half + 1)], axis=0)
+
+
+#: Channels along and across the line of action.
+AXES = (("x_p", "y_p"), ("bearing_force_x_p", "bearing_force_y_p"))
+
+
+def turned(curves, degrees, *axes):
+    """Curves whose axes are turned by an angle from the line of action: a rotation by hand."""
+    values = {channel.name: channel.values for channel in curves.channels}
+    cosine, sine = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+    for x, y in axes:
+        values[x], values[y] = cosine * values[x] - sine * values[y], sine * values[x] + cosine * values[y]
+    return replace(curves, channels=tuple(replace(c, values=values[c.name]) for c in curves.channels))
 
 
 def rivals(name, problem):
@@ -308,7 +336,8 @@ def test_free_factor_is_recovered(name, pairs, shared):
 def test_reading(name, pairs, shared):
     pair = pairs["unlike"]
     motion = lumped_motion(pair)
-    curves = READINGS[name](sampled(motion))
+    both = ("dte", *(one for axes in AXES for one in axes)) if name.startswith("axes") else CHANNELS
+    curves = READINGS[name](sampled(motion, both))
     assert says(climbed(Problem.of(pair, curves, motion), shared, "unlike", name), name)
 
 

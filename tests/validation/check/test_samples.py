@@ -58,6 +58,20 @@ def test_a_difference_at_no_compared_order_is_said(pair, order):
     assert "y_g" not in remark
 
 
+def test_values_with_few_digits_are_said(pair):
+    def rounded(name, values, time):
+        if name != "dte":
+            return values
+        step = np.ptp(values) / 12.0
+        return np.round(values / step) * step
+
+    curves = sampled(pair, QUANTITIES, change=rounded)
+    (remark,) = [one for one in check(pair, curves, explain=False).remarks if "in steps of" in one]
+    assert remark.startswith("dte is written in steps of ")
+    assert "8.3" in remark or "9.1" in remark  # 12 steps, or 11 where both ends are rounded inwards
+    assert not [one for one in check(pair, sampled(pair, QUANTITIES)).remarks if "in steps of" in one]
+
+
 def test_noise_and_motions_that_agree_say_nothing(pair):
     for noise in (0.0, 0.01):
         result = check(pair, sampled(pair, QUANTITIES, noise=noise, cycles=16))

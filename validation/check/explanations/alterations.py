@@ -10,7 +10,13 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from validation.check.explanations.cause import Cause, Choice, Kind, Variant
+from validation.check.explanations.physics import Friction, reversal_of
 from validation.check.problem import Problem
+
+#: Inputs of the pair whose stiffness over the mesh cycle is altered.
+_PRESCRIBED = {"mesh.contact": "prescribed", "mesh.relief": "ignored"}
+#: Places closer than this share of the base pitch are one.
+_APART = 5e-3
 
 
 def _altered(label: float | str, words: str, **changes: Any) -> Choice:
@@ -85,6 +91,25 @@ def _friction_course(problem: Problem, variant: Variant) -> list[Choice]:
             "friction of the whole mesh force at the leading tooth pair",
             course="total load on the leading pair",
         ),
+        *_reversals(variant),
+    ]
+
+
+def _reversals(variant: Variant) -> list[Choice]:
+    """Other places at which friction reverses, where they are not the pitch point."""
+    pair = variant.pair
+    g = pair.geometry
+    places: tuple[tuple[Friction, str], ...] = (
+        (
+            "pitch point of the rack",
+            "friction that reverses at the pitch point of the standard centre distance",
+        ),
+        ("middle of the path", "friction that reverses in the middle of the path of contact"),
+    )
+    return [
+        _altered(course, words, course=course)
+        for course, words in places
+        if abs((reversal_of(pair, course, g.L_XA, g.L_XD) or g.L_XP) - g.L_XP) > _APART * g.base_pitch
     ]
 
 
@@ -124,20 +149,29 @@ def _over_cycle(problem: Problem, variant: Variant) -> list[Choice]:
         "double pair": "two tooth pairs in contact all the time",
         "shared evenly": "all tooth pairs in contact with the same share of the load",
         "whole mesh for each pair": "the stiffness of the whole mesh on each tooth pair",
+        "levels exchanged": "the high and the low mesh stiffness exchanged",
         "first harmonic": "the mean and the first harmonic of the mesh stiffness",
         "three harmonics": "the mean and three harmonics of the mesh stiffness",
         "two levels": "a rectangular mesh stiffness, one value for each number of pairs in contact",
         "smoothed": "a mesh stiffness without jumps, smoothed over a fifth of the mesh cycle",
     }
-    if variant.physics.stiffness or variant.pair.mesh.stiffness.whole_mesh:
+    if not _may_vary(problem, variant):
         return []
 
     def change(name: str) -> Callable[[Variant], Variant]:
-        return lambda variant: variant.with_inputs(
-            {"mesh.contact": "prescribed", "mesh.relief": "ignored"}
-        ).with_physics(stiffness=name)
+        return lambda variant: variant.with_inputs(_PRESCRIBED).with_physics(stiffness=name)
 
     return [Choice(name, words, change(name)) for name, words in texts.items()]
+
+
+def _may_vary(problem: Problem, variant: Variant) -> bool:
+    """Whether the stiffness over the mesh cycle can be altered."""
+    return not variant.physics.of_stiffness and not variant.pair.mesh.stiffness.whole_mesh
+
+
+def _variation(variant: Variant, value: float) -> Variant:
+    """The variation of the stiffness of the whole mesh times a factor, with prescribed contact."""
+    return variant.with_inputs(_PRESCRIBED).with_physics(variation=variant.physics.variation * value)
 
 
 def _radius(problem: Problem, variant: Variant) -> list[Choice]:
@@ -187,7 +221,8 @@ def _causes() -> Iterator[Cause]:
     yield altered(
         "friction over the path",
         "another course of the friction over the path of contact",
-        "without reversal, leading pair, total load on the leading pair",
+        "without reversal, leading pair, total load on the leading pair, pitch point of the rack, "
+        "middle of the path",
         _friction_course,
     )
     yield Cause(
@@ -213,9 +248,21 @@ def _causes() -> Iterator[Cause]:
     yield altered(
         "stiffness over the mesh cycle",
         "another course of the mesh stiffness",
-        "reversed, constant, single pair, double pair, shared evenly, whole mesh for each pair, first "
-        "harmonic, three harmonics, two levels, smoothed",
+        "reversed, constant, single pair, double pair, shared evenly, whole mesh for each pair, levels "
+        "exchanged, first harmonic, three harmonics, two levels, smoothed",
         _over_cycle,
+    )
+    yield Cause(
+        name="variation of the mesh stiffness",
+        kind=Kind.PHYSICS,
+        meaning="the variation of the mesh stiffness about its mean",
+        span="factor, about 0.3 to 1.8",
+        grid=(0.3, 0.6, 1.3, 1.8),
+        change=_variation,
+        words="the variation of the mesh stiffness about its mean times {value}",
+        applies=lambda problem, variant: (
+            not variant.physics.stiffness and not variant.pair.mesh.stiffness.whole_mesh
+        ),
     )
     yield altered("pitch radius", "pitch radii in place of base radii", "1/cos(alpha)", _radius)
     yield altered("supports", "rigid bearings, or a torsional model", "rigid, torsional", _bearings)

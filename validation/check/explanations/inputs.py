@@ -25,6 +25,8 @@ _DAMPER = (0.1, 0.4, 2.5, 10.0)
 _BEARING = (0.01, 0.1, 0.4, 2.5, 10.0, 100.0)
 _LENGTH = (0.8, 0.87, 0.94, 1.06, 1.13, 1.25)
 _CENTRES = (0.99, 0.993, 0.9955, 0.998, 1.002, 1.0045, 1.007, 1.01)
+#: A centre distance is the standard one up to this share.
+_SAME_CENTRE = 1e-4
 _GEARS = ("pinion", "gear")
 _LINES = ("loa", "oloa")
 _PRESSURE_ANGLES = (14.5, 17.5, 20.0, 22.5, 25.0)
@@ -428,10 +430,34 @@ def _shifts(problem: Problem, variant: Variant) -> list[Choice]:
         choices.append(
             _choice("ignored", "profile shifts ignored", lambda pair: {**none, "centre_distance": None})
         )
+        reversed_shifts = none | {"pinion.profile_shift": -first, "gear.profile_shift": -second}
+        choices.append(
+            _choice(
+                "wrong sign",
+                "profile shifts with the wrong sign",
+                lambda pair: {**reversed_shifts, "centre_distance": None},
+            )
+        )
+    standard = sum(_reference_radii(variant.pair)) / variant.pair.geometry.centre_distance
+    if abs(standard - 1.0) > _SAME_CENTRE:
+        words = "the standard centre distance, half of the module times the sum of the teeth"
+        choices.append(_choice("standard centre", words, _times(_centre_distance, standard)))
     if first != second:
         exchanged = {"pinion.profile_shift": second, "gear.profile_shift": first}
         words = "the profile shifts of pinion and gear exchanged"
         choices.append(_choice("exchanged", words, lambda pair: exchanged))
+    return choices
+
+
+def _number_of_teeth(problem: Problem, variant: Variant) -> list[Choice]:
+    """One tooth more or less on a gear; tips and centre distance stay."""
+    choices = []
+    for gear in _GEARS:
+        for more in (-1, 1):
+            count = getattr(variant.pair, gear).teeth + more
+            fields = {f"{gear}.teeth": count, **_centre_distance(variant.pair, 1.0)}
+            words = f"a {gear} with {count} teeth"
+            choices.append(_choice(f"{gear}: {more:+d}", words, _constant(fields)))
     return choices
 
 
@@ -551,7 +577,15 @@ def _fixed() -> Iterator[Cause]:
         ", ".join(f"{angle:g}" for angle in _PRESSURE_ANGLES),
         _pressure_angle,
     )
-    yield fixed("profile shifts", "profile shifts ignored or exchanged", "ignored, exchanged", _shifts)
+    yield fixed(
+        "profile shifts",
+        "profile shifts ignored, exchanged or with the wrong sign; the standard centre distance",
+        "ignored, wrong sign, standard centre, exchanged",
+        _shifts,
+    )
+    yield fixed(
+        "number of teeth", "one tooth more or less on a gear", "pinion, gear: -1, 1", _number_of_teeth
+    )
     yield fixed("one face width", "one face width for both gears", "pinion, gear", _one_width)
 
 

@@ -12,7 +12,12 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from validation.check.explanations.cause import Cause, Choice, Kind, Variant
-from validation.check.explanations.reading import Reading, families, refined_curves_fit
+from validation.check.explanations.reading import (
+    Reading,
+    families,
+    refined_curves_fit,
+    turning_channels,
+)
 from validation.check.problem import Problem
 from validation.check.quantities import GEARS, LINES, QUANTITIES, Quantity, quantity_of
 
@@ -60,6 +65,10 @@ _TAKES = 0.5
 _MOST_SWAPPED = 12
 #: Time constant of a low-pass filter: mesh cycles over 2 pi. Delay: mesh cycles.
 _TIME_CONSTANT = (0.125, 0.25, 0.5, 1.0, 2.0)
+_WINDOW = (0.05, 0.1, 0.2, 0.35, 0.5)
+#: Trial angles of axes over a right angle [rad].
+_TURNED = (-1.0, -0.78, -0.5, -0.22, 0.22, 0.5, 0.78, 1.0)
+_QUARTER = 0.5 * math.pi
 _DELAY = (-0.15, -0.05, 0.05, 0.15)
 
 
@@ -307,6 +316,15 @@ def causes_of_channels(problem: Problem) -> list[Cause]:
     ]
 
 
+def _has_forces_to_turn(problem: Problem, variant: Variant) -> bool:
+    return bool(turning_channels(problem.curves.channels, forces_only=True))
+
+
+def _has_axes_to_turn(problem: Problem, variant: Variant) -> bool:
+    every = turning_channels(problem.curves.channels, forces_only=False)
+    return every != turning_channels(problem.curves.channels, forces_only=True)
+
+
 #: A delay of one channel; ``causes_of_channels`` makes one cause for each channel of it.
 DELAY = Cause(
     name="delay of a channel",
@@ -361,6 +379,45 @@ def _causes() -> Iterator[Cause]:
         change=lambda variant, value: variant.with_reading(replace(variant.reading, time_constant=value)),
         words="a low-pass filter of first order at {value} mesh orders",
         shown=lambda value: 1.0 / max(value, 1e-300),
+    )
+    yield Cause(
+        name="moving average",
+        kind=Kind.READING,
+        meaning="all channels through a moving average",
+        span="window of 0.05 to 0.5 mesh cycles",
+        grid=_WINDOW,
+        neutral=0.0,
+        change=lambda variant, value: variant.with_reading(replace(variant.reading, window=value)),
+        words="a moving average over {value} mesh cycles",
+    )
+    yield Cause(
+        name="axes of the bearing forces",
+        kind=Kind.READING,
+        meaning="bearing forces in axes that are turned from the line of action",
+        span="-90 to 90 degrees",
+        grid=_TURNED,
+        neutral=0.0,
+        change=lambda variant, value: variant.with_reading(
+            replace(variant.reading, turned_forces=_QUARTER * value)
+        ),
+        words="axes of the bearing forces that are turned by {value} degrees from the line of action",
+        shown=lambda value: 90.0 * value,
+        applies=_has_forces_to_turn,
+    )
+    yield Cause(
+        name="axes of all channels",
+        kind=Kind.READING,
+        meaning="displacements and bearing forces in axes that are turned from the line of action",
+        span="-90 to 90 degrees",
+        grid=_TURNED,
+        neutral=0.0,
+        change=lambda variant, value: variant.with_reading(
+            replace(variant.reading, turned_axes=_QUARTER * value)
+        ),
+        words="axes of displacements and bearing forces that are turned by {value} degrees from the line of "
+        "action",
+        shown=lambda value: 90.0 * value,
+        applies=_has_axes_to_turn,
     )
     yield DELAY
 

@@ -8,6 +8,7 @@ Sources: docs/how_to/check_your_model.md, "Explanations"; docs/theory/equations.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
@@ -49,6 +50,8 @@ _TOLERANCE = 1e-7
 _COURSE = 2048
 _WINDOW = 0.2
 _HARMONICS = 12
+#: Least stiffness of the whole mesh over its mean, where a change would make it negative.
+_LEAST_STIFFNESS = 0.02
 #: Positions closer than this share of the base pitch are one.
 _SAME = 1e-9
 
@@ -61,12 +64,20 @@ Stiffness = Literal[
     "double pair",
     "shared evenly",
     "whole mesh for each pair",
+    "levels exchanged",
     "first harmonic",
     "three harmonics",
     "two levels",
     "smoothed",
 ]
-Friction = Literal["", "without reversal", "leading pair", "total load on the leading pair"]
+Friction = Literal[
+    "",
+    "without reversal",
+    "leading pair",
+    "total load on the leading pair",
+    "pitch point of the rack",
+    "middle of the path",
+]
 Bearings = Literal["elastic", "rigid", "left out"]
 
 
@@ -85,6 +96,7 @@ class Physics:
     radius : factor on the base radii as lever arms of the mesh force and in the transmission error
     damper : law of the dampers of the teeth
     stiffness : change of the stiffness of the tooth pairs over the mesh cycle
+    variation : factor on the variation of the stiffness of the whole mesh about its mean
     bearings : "rigid": without translations, bearings carry the mesh force; "left out": a torsional model
     """
 
@@ -99,7 +111,13 @@ class Physics:
     radius: float = 1.0
     damper: Damper = "of each pair"
     stiffness: Stiffness = ""
+    variation: float = 1.0
     bearings: Bearings = "elastic"
+
+    @property
+    def of_stiffness(self) -> bool:
+        """Whether the stiffness over the mesh cycle is altered."""
+        return bool(self.stiffness) or self.variation != 1.0
 
     @property
     def of_equations(self) -> bool:
@@ -110,6 +128,7 @@ class Physics:
             "course": "",
             "damper": "of each pair",
             "stiffness": "",
+            "variation": 1.0,
         }
         return replace(self, **of_laws) != Physics()  # type: ignore[arg-type]
 
@@ -140,7 +159,7 @@ def motion_of(
         return lumped_motion(pair, recurrence)
     if pair.healthy is not pair or (physics.of_equations and pair.shafts is not None):
         raise NumericalError("This alteration needs like teeth; of the equations of motion, springs too.")
-    if physics.stiffness and not prescribed:
+    if physics.of_stiffness and not prescribed:
         raise NumericalError("A stiffness over the mesh cycle needs prescribed contact.")
     again = recurrence or pair.pinion.teeth
     system = altered_system(pair, physics)
@@ -197,6 +216,8 @@ def altered_elements(pair: GearPair, physics: Physics) -> MeshElements:
     elements = contact_of(pair).elements(pair)
     if physics.stiffness:
         elements = _with_stiffness(pair, elements, physics.stiffness)
+    if physics.variation != 1.0:
+        elements = _with_variation(pair, elements, physics.variation)
     if physics.damper != "of each pair":
         factor = damper_factor(pair, elements, physics.damper)
         damping = _fitted(lambda xi: elements.damping(xi) * factor(xi), pair, elements)
@@ -221,16 +242,21 @@ def _friction_over_path(
 
     Without reversal: |mu|. Only the leading pair, the last one that is on the path of contact: mu where the
     next pair is no longer there, else 0. Its friction by the load of all pairs: mu K/k there, with the
-    stiffness K of the whole mesh, because loads are shared as stiffnesses.
+    stiffness K of the whole mesh, because loads are shared as stiffnesses. Reversal at another place: |mu|
+    with the sign that mu has on its side of that place.
     """
     low, high = friction.interval
     pitch = pair.geometry.base_pitch
     leads = high - pitch
     total = _total(pair, stiffness)
+    reversal = reversal_of(pair, course, low, high)
+    behind = float(np.sign(friction(np.array([high - _SAME * pitch]))[0]))
 
     def changed(xi: FloatArray) -> FloatArray:
         if course == "without reversal":
             return np.abs(friction(xi))
+        if reversal is not None:
+            return np.asarray(behind * np.sign(xi - reversal) * np.abs(friction(xi)))
         leading = np.where(xi > leads, friction(xi), 0.0)
         if course == "leading pair":
             return np.asarray(leading)
@@ -240,12 +266,22 @@ def _friction_over_path(
     pair_stiffness_scale = mean_of_pairs(stiffness, pitch)
     laws = (friction, stiffness) if course.startswith("total") else (friction,)
     marks = _marks(pair, laws, low, high)
-    marks = np.append(marks, [leads, pair.geometry.L_XP])
+    marks = np.append(marks, [leads, pair.geometry.L_XP, *([] if reversal is None else [reversal])])
     marks = np.unique(marks[(marks > low + _SAME * pitch) & (marks < high - _SAME * pitch)])
     marks = marks[np.diff(marks, prepend=-np.inf) > _SAME * pitch]
     size = float(np.abs(changed(np.linspace(low, high, 401)[1:-1])).max())
     breaks = np.concatenate([[low], marks, [high]])
     return PathFunction.fit(changed, breaks, marks, tolerance=_TOLERANCE * max(size, 1e-300))
+
+
+def reversal_of(pair: GearPair, course: Friction, low: float, high: float) -> float | None:
+    """Return the place xi [m] at which friction reverses where that is not the pitch point; None: it is.
+
+    The pitch point of the rack lies at r_b tan(alpha) with the pressure angle of the rack, not of operation.
+    """
+    if course == "pitch point of the rack":
+        return pair.geometry.base_radius_pinion * math.tan(pair.basic_rack.pressure_angle)
+    return 0.5 * (low + high) if course == "middle of the path" else None
 
 
 class AlteredLaws(ToothLaws):
@@ -340,6 +376,10 @@ def _with_stiffness(pair: GearPair, elements: MeshElements, change: Stiffness) -
         changed = _fitted(lambda xi: total(xi) / np.maximum(pairs(xi), 1.0), pair, elements)
     elif change == "whole mesh for each pair":
         changed = _fitted(total, pair, elements)
+    elif change == "levels exchanged":
+        places = low + (np.arange(_COURSE) + 0.5) / _COURSE * pitch
+        both = float(total(places).max() + total(places).min())
+        changed = _fitted(lambda xi: stiffness(xi) * (both - total(xi)) / total(xi), pair, elements)
     elif change in ("first harmonic", "three harmonics", "two levels", "smoothed"):
         course = _smoother(pair, stiffness, change)
         changed = _fitted(lambda xi: stiffness(xi) * course(xi) / total(xi), pair, elements)
@@ -348,6 +388,28 @@ def _with_stiffness(pair: GearPair, elements: MeshElements, change: Stiffness) -
         one_pair = float(stiffness(np.array([middle]))[0])
         interval = (middle - 0.5 * count * pitch, middle + 0.5 * count * pitch)
         changed = PathFunction.constant(one_pair, *interval)
+    return _with_law(pair, elements, changed, interval)
+
+
+def _with_variation(pair: GearPair, elements: MeshElements, factor: float) -> MeshElements:
+    """Element laws with another variation of the stiffness K of the whole mesh: k (mean + f (K - mean))/K."""
+    stiffness = elements.stiffness
+    mean = mean_of_pairs(stiffness, pair.geometry.base_pitch)
+    total = _total(pair, stiffness)
+
+    def changed(xi: FloatArray) -> FloatArray:
+        whole = total(xi)
+        varied = np.maximum(mean + factor * (whole - mean), _LEAST_STIFFNESS * mean)
+        return np.asarray(stiffness(xi) * varied / whole)
+
+    return _with_law(pair, elements, _fitted(changed, pair, elements), stiffness.interval)
+
+
+def _with_law(
+    pair: GearPair, elements: MeshElements, changed: PathFunction, interval: tuple[float, float]
+) -> MeshElements:
+    """Element laws with another stiffness of the tooth pair, which the dampers follow, on an interval."""
+    stiffness = elements.stiffness
     mass = bodies_of(pair).effective_mass
     ratio = pair.mesh.damping_ratio
 
@@ -389,7 +451,7 @@ def _smoother(
     else:
         most = 1 if change == "first harmonic" else 3
         orders, waves = orders[:most], waves[:most]
-    least = 0.02 * float(values.mean())
+    least = _LEAST_STIFFNESS * float(values.mean())
 
     def course(xi: FloatArray) -> FloatArray:
         phase = (xi - places[0]) / pitch

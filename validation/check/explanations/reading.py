@@ -7,7 +7,8 @@ Sources: docs/how_to/check_your_model.md, "Explanations".
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -17,7 +18,7 @@ from numpy.typing import NDArray
 from lumped.errors import NumericalError
 from lumped.model.periodic_system import LTVSystem, supports_of
 from lumped.schema.pair import GearPair
-from lumped.typing import FloatArray
+from lumped.typing import ComplexArray, FloatArray
 from validation.check.curve_orders import ChannelOrders, orders_of_channel, without_ramp
 from validation.check.curves import Channel, Curves
 from validation.check.problem import Problem
@@ -38,6 +39,9 @@ class Reading:
     delays : channel -> delay against the other channels [mesh cycles]
     reversed : whether the time runs backwards
     time_constant : of a low-pass filter of first order of all channels, 1 over the mesh order of its cutoff
+    window : of a moving average of all channels [mesh cycles]
+    turned_forces : angle [rad] by which the axes of the bearing forces are turned from the line of action
+    turned_axes : angle [rad] by which the axes of all displacements and bearing forces are turned from it
     free_shift : whether the phase that the user states is ignored
     decaying : whether free vibrations that decay are taken out of the curves
     refined : whether the curves with half the step are taken
@@ -48,6 +52,9 @@ class Reading:
     delays: ByChannel = ()
     reversed: bool = False
     time_constant: float = 0.0
+    window: float = 0.0
+    turned_forces: float = 0.0
+    turned_axes: float = 0.0
     free_shift: bool = False
     decaying: bool = False
     refined: bool = False
@@ -77,18 +84,65 @@ def read(problem: Problem, reading: Reading) -> tuple[ChannelOrders, ...]:
     quantities = dict(reading.quantities)
     delays = dict(reading.delays)
     result = []
-    for one in _channels(problem, reading):
+    for one in _in_our_axes(_channels(problem, reading), reading):
         channel = one.channel
         orders = _scaled(one.orders, 1.0 / factors.get(channel.name, 1.0))
-        if reading.time_constant > 0.0:
-            orders = _times(orders, 1.0 + 1j * orders.orders * reading.time_constant)
         if channel.name in delays:
             orders = _times(orders, np.exp(2j * np.pi * orders.orders * delays[channel.name]))
         if reading.reversed:
             orders = replace(orders, values=orders.values.conj())
         channel = replace(channel, quantity=quantities.get(channel.name, channel.quantity))
-        result.append(ChannelOrders(channel, orders))
+        result.append(ChannelOrders(channel, orders, gains=_gains(reading, orders.orders)))
     return tuple(result)
+
+
+def _gains(reading: Reading, orders: FloatArray) -> ComplexArray | None:
+    """Gains of the filters of a reading at mesh orders; None: no filter.
+
+    A low-pass filter of first order has 1/(1 + i m tau), a moving average over w cycles sin(pi m w)/(pi m w).
+    """
+    if reading.time_constant <= 0.0 and reading.window <= 0.0:
+        return None
+    gains = np.sinc(orders * reading.window) / (1.0 + 1j * orders * reading.time_constant)
+    return gains.conj() if reading.reversed else gains
+
+
+def turning_channels(channels: Iterable[Channel], *, forces_only: bool) -> tuple[tuple[str, str], ...]:
+    """Return the names of channels along and across the line of action, of the same kind and gear."""
+    names = {channel.quantity: channel.name for channel in channels if channel.tooth_pair is None}
+    return tuple(
+        (names[quantity], names[other])
+        for quantity in names
+        if (other := quantity.replace("x_", "y_")) != quantity and other in names
+        if quantity.startswith("bearing_force_") or not forces_only
+    )
+
+
+def _in_our_axes(channels: tuple[ChannelOrders, ...], reading: Reading) -> tuple[ChannelOrders, ...]:
+    """Channels along and across the line of action, of channels in axes that are turned from it.
+
+    x' = x cos(a) - y sin(a) and y' = x sin(a) + y cos(a) are solved for x and y.
+    """
+    by_name = {one.channel.name: one for one in channels}
+    for angle, forces_only in ((reading.turned_axes, False), (reading.turned_forces, True)):
+        if angle == 0.0:
+            continue
+        cosine, sine = math.cos(angle), math.sin(angle)
+        for along, across in turning_channels((one.channel for one in channels), forces_only=forces_only):
+            x, y = by_name[along].orders, by_name[across].orders
+            by_name[along] = by_name[along]._replace(orders=_sum(x, cosine, y, sine))
+            by_name[across] = by_name[across]._replace(orders=_sum(y, cosine, x, -sine))
+    return tuple(by_name.values())
+
+
+def _sum(one: ComplexOrders, factor: float, other: ComplexOrders, other_factor: float) -> ComplexOrders:
+    """Orders of a sum of two signals with factors."""
+    return replace(
+        one,
+        values=factor * one.values + other_factor * other.values,
+        mean=factor * one.mean + other_factor * other.mean,
+        covariance=factor**2 * one.covariance + other_factor**2 * other.covariance,
+    )
 
 
 def _channels(problem: Problem, reading: Reading) -> tuple[ChannelOrders, ...]:
