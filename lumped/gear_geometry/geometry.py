@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from lumped.errors import FieldProblem, refuse
@@ -144,6 +144,15 @@ class Geometry:
     def pitch_line_velocity(self) -> float:
         """Speed of the operating pitch circles [m/s]."""
         return self.omega_pinion * self.operating_radius_pinion
+
+    def at_speed(self, omega_pinion: float) -> Geometry:
+        """The same gears at another speed of the pinion [rad/s]."""
+        return replace(
+            self,
+            omega_pinion=omega_pinion,
+            omega_gear=omega_pinion * self.base_radius_pinion / self.base_radius_gear,
+            mesh_period=self.base_pitch / (omega_pinion * self.base_radius_pinion),
+        )
 
 
 def build_geometry(

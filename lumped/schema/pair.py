@@ -448,7 +448,9 @@ class GearPair(Section, metaclass=_InOurWords):
         sections = {name: getattr(self, name) for name in GearPair.model_fields}
         sections["operating"] = self.operating.model_copy(update={"pinion_speed": speed})
         sections["assumed"] = self.assumed.without("operating.pinion_speed")
-        return GearPair.model_construct(**sections)
+        pair = GearPair.model_construct(**sections)
+        pair.__dict__["geometry"] = self.geometry.at_speed(speed)
+        return pair
 
     if not TYPE_CHECKING:  # a checker knows the fields
 

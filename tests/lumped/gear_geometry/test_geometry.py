@@ -11,6 +11,7 @@ from scipy.optimize import brentq
 
 from lumped import ParameterError, geometry, load_gear_pair
 from multibody.gears.undercut import undercut_edge
+from tests.unlike_pairs import UNLIKE, unlike_pair
 
 ROUNDING = 1e-13  # relative, of lengths from a handful of operations in double precision
 
@@ -170,3 +171,11 @@ def test_exchanging_the_gears_mirrors_the_line_of_action(pair):
     assert h.contact_ratio == pytest.approx(g.contact_ratio, rel=1e-12)
     assert h.normal_backlash == pytest.approx(g.normal_backlash, rel=1e-12, abs=1e-15)
     assert (h.form_radius_pinion, h.root_radius_gear) == (g.form_radius_gear, g.root_radius_pinion)
+
+
+@pytest.mark.parametrize("name", UNLIKE)
+def test_geometry_at_another_speed_is_that_of_a_file_with_this_speed(name):
+    pair = unlike_pair(name).with_(range=None, speed="700 rpm")
+    g = pair.at_speed(777.0).geometry
+    assert g == pair.with_(speed="777 rpm").geometry
+    assert g.mesh_period == pytest.approx(60 / (777 * pair.pinion.teeth), rel=ROUNDING)
