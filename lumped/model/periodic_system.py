@@ -237,10 +237,14 @@ class LTVSystem:
     def matrices(self, time: ArrayLike) -> FloatArray:
         """A at times (k,) [s] -> (k, 2m, 2m)."""
         gain = self.gain(time)
+        return self.with_feedback(gain.stiffness, gain.damping)
+
+    def with_feedback(self, stiffness: FloatArray, damping: FloatArray) -> FloatArray:
+        """A with the mesh feedback of ``MeshGain`` (k, m) -> (k, 2m, 2m)."""
         m = len(self.coordinates)
-        a = np.repeat(self.constant[None], gain.stiffness.shape[0], axis=0)
-        a[:, m:, :m] += gain.stiffness[:, :, None] * self.deflection
-        a[:, m:, m:] += gain.damping[:, :, None] * self.deflection
+        a = np.repeat(self.constant[None], len(stiffness), axis=0)
+        a[:, m:, :m] += stiffness[:, :, None] * self.deflection
+        a[:, m:, m:] += damping[:, :, None] * self.deflection
         return a
 
     def forcing(self, time: ArrayLike) -> FloatArray:

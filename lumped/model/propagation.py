@@ -124,8 +124,9 @@ def fastest_frequency(system: LTVSystem) -> float:
     marks = np.union1d(system.cycle.edges, breaks[:: -(-breaks.size // _MOST_LOOKS)])
     times = (marks[:-1] + np.multiply.outer([0.05, 0.5, 0.95], np.diff(marks))).ravel()
     segment = np.searchsorted(system.cycle.edges, times, side="right") - 1
-    stiffness = np.abs(system.gain(times, segment).stiffness @ system.deflection)
-    values = np.linalg.eigvals(system.matrices(times[[np.argmax(stiffness)]])[0])
+    gain = system.gain(times, segment)
+    stiffest = [np.argmax(np.abs(gain.stiffness @ system.deflection))]
+    values = np.linalg.eigvals(system.with_feedback(gain.stiffness[stiffest], gain.damping[stiffest])[0])
     return float(np.abs(values).max()) * 1.1
 
 
@@ -263,42 +264,62 @@ def without_mesh(
     forces = np.column_stack([system.torque_pinion * system.pinion_torque, extra])[m:]
     lengths = h
     h = h[:, None, None]
-    implicit = np.eye(s * m) - h**2 * _kronecker(a @ a, stiffness) - h * _kronecker(a, damping)
-    inverse = np.linalg.inv(implicit).reshape(k, s, m, s, m)
+    inverse = _inverse_of_stages(system, lengths, a)
+    groups, coupled = inverse.shape[1:4:2]
     right = np.zeros((k, s, m, 2 * m + forces.shape[1]))
     right[..., :m] = stiffness
     right[..., m : 2 * m] = h[..., None] * np.multiply.outer(c, stiffness) + damping
     right[..., 2 * m :] = forces
     columns = right.shape[-1]
-    accelerations = (inverse.reshape(k, s * m, s * m) @ right.reshape(k, s * m, columns)).reshape(right.shape)
+    by_group = right.reshape(k, s, groups, coupled, columns).swapaxes(1, 2)
+    solved = inverse.reshape(k, groups, s * coupled, -1) @ by_group.reshape(k, groups, s * coupled, columns)
+    accelerations = solved.reshape(by_group.shape).swapaxes(1, 2).reshape(right.shape)
     to_end = np.stack([h[:, 0] ** 2 * (b @ a), h[:, 0] * b], axis=1)  # (k, 2, s)
     end = np.einsum("kds,ksmx->kdmx", to_end, accelerations).reshape(k, 2 * m, columns)
     end[:, :, : 2 * m] += np.eye(2 * m)
     end[:, :m, m : 2 * m] += h * np.eye(m)
-    p = np.einsum("m,ksmx->ksx", u, accelerations)
-    along = [p, end]
-    moves = np.einsum("kdr,krmsi->ksidm", to_end, inverse)
-    by_feedback = [np.einsum("m,krmsi->ksir", u, inverse), moves.reshape(k, s, m, 2 * m)]
+    along = [np.einsum("m,ksmx->ksx", u, accelerations), end]
+    # Accelerations (k, stages, m, stages, forces) at the stages by unit forces at the stages.
+    number = len(directions)
+    by_unit = np.einsum("kgrnsi,fgi->krgnsf", inverse, directions.reshape(number, groups, coupled))
+    by_unit = by_unit.reshape(k, s, m, s, number)
+    moves = np.einsum("kdr,krmsf->ksfdm", to_end, by_unit)
+    by_force = [np.einsum("m,krmsf->ksfr", u, by_unit), moves.reshape(k, s, number, 2 * m)]
     if with_rates:
         rates = h[..., None] * np.einsum("jr,krmx->kjmx", a, accelerations)
         rates[..., m : 2 * m] += np.eye(m)
         along.append(rates.reshape(k, s * m, columns))
-        moves = h[..., None, None] * np.einsum("jr,krmsi->ksijm", a, inverse)
-        by_feedback.append(moves.reshape(k, s, m, s * m))
+        rates_by_force = h[..., None, None] * np.einsum("jr,krmsf->ksfjm", a, by_unit)
+        by_force.append(rates_by_force.reshape(k, s, number, s * m))
     return FreeSteps(
         along=np.ascontiguousarray(np.concatenate(along, axis=1).swapaxes(1, 2)),
-        by_force=np.ascontiguousarray(
-            np.einsum("fm,ksmr->ksfr", directions, np.concatenate(by_feedback, axis=3))
-        ),
+        by_force=np.ascontiguousarray(np.concatenate(by_force, axis=3)),
         by_p=np.concatenate([h**2 * (a @ a), h * a], axis=1),
         reach=np.multiply.outer(lengths, c),
     )
 
 
-def _kronecker(first: FloatArray, second: FloatArray) -> FloatArray:
-    """Kronecker product of two square matrices; `numpy.kron` takes ten times as long for small ones."""
-    size = len(first) * len(second)
-    return np.asarray((first[:, None, :, None] * second[:, None, :]).reshape(size, size), dtype=np.float64)
+def _inverse_of_stages(system: LTVSystem, h: FloatArray, a: FloatArray) -> FloatArray:
+    """Inverse of the equations W - h^2 (a a) K W - h a C W = f for the accelerations W at the stages.
+
+    Only coordinates of one group are coupled: on springs each is a group of its own, on shafts all are one.
+    The result (k, groups, stages, coordinates, stages, coordinates) has an inverse for each group.
+    """
+    m = system.size // 2
+    stiffness, damping = (np.asarray(part) for part in np.split(system.constant[m:], 2, axis=1))
+    single = not any(np.count_nonzero(part - np.diag(part.diagonal())) for part in (stiffness, damping))
+    coupled = 1 if single else m
+    h = h[:, None, None, None, None, None]
+    implicit = np.zeros((h.size, m // coupled, a.shape[0], coupled, a.shape[0], coupled))
+    for part, by_stages in (
+        (stiffness, h**2 * (a @ a)[:, None, :, None]),
+        (damping, h * a[:, None, :, None]),
+    ):
+        blocks = part.diagonal()[:, None, None] if single else part[None]
+        implicit -= by_stages * blocks[:, None, :, None, :]
+    size = a.shape[0] * coupled
+    square = implicit.reshape(h.size, m // coupled, size, size)
+    return np.asarray(np.linalg.inv(square + np.eye(size)).reshape(implicit.shape), dtype=np.float64)
 
 
 @dataclass(frozen=True, eq=False)

@@ -23,10 +23,9 @@ def system_of(constant, gain, deflection, edges):
     size = constant.shape[0]
     column = np.asarray(deflection)
 
-    def matrices(t):
-        a = np.repeat(constant[None], t.size, axis=0)
-        lower = np.concatenate([g[..., None] * column for g in gain(t)[:2]], axis=2)
-        a[:, size // 2 :] += lower
+    def with_feedback(stiffness, damping):
+        a = np.repeat(constant[None], len(stiffness), axis=0)
+        a[:, size // 2 :] += np.concatenate([g[..., None] * column for g in (stiffness, damping)], axis=2)
         return a
 
     def no_pairs(t):
@@ -37,7 +36,8 @@ def system_of(constant, gain, deflection, edges):
     return System(
         size=size, period=float(edges[-1]), cycle=SimpleNamespace(edges=ends, breaks=ends, bends=ends[:0]),
         constant=constant, deflection=column, torque_pinion=np.zeros(size), pinion_torque=0.0,
-        gain=lambda t, segment: MeshGain(*gain(t), no_pairs(t)), matrices=matrices,
+        gain=lambda t, segment: MeshGain(*gain(t), no_pairs(t)),
+        with_feedback=with_feedback, matrices=lambda t: with_feedback(*gain(t)[:2]),
         mesh_forces=lambda t, segment: (np.stack(gain(t), axis=1), no_pairs(t)), directions=np.eye(size // 2),
     )  # fmt: skip
 
