@@ -192,19 +192,16 @@ class Shooting:
         slopes = np.column_stack([by_state, by_torque])
         return np.asarray(slopes * sizes / of_mismatch[:, None], dtype=np.float64)
 
-    def derivatives(self, unknowns: FloatArray, all_states: bool = True) -> FloatArray:
-        """Derivatives of the mismatch by the unknowns, both over their scales, by differences.
+    def derivatives(self, unknowns: FloatArray, columns: int | None = None) -> FloatArray:
+        """Derivatives of the mismatch by the first unknowns, both over their scales, by differences.
 
-        The runs have steps twice as long. Without ``all_states`` only the torque is changed, and the states
-        count as faded over the period.
+        The runs have steps twice as long. ``columns``: number of these unknowns; by default all.
         """
         sizes, of_mismatch = self.scales(unknowns)
         unchanged = self.mismatch(unknowns, self.coarse)[0]
-        slopes = -np.eye(unknowns.size)
-        for j in range(0 if all_states else unknowns.size - 1, unknowns.size):
-            changed = unknowns + _DIFFERENCE * sizes * (np.arange(unknowns.size) == j)
-            slopes[:, j] = (self.mismatch(changed, self.coarse)[0] - unchanged) / _DIFFERENCE / of_mismatch
-        return slopes
+        changes = np.diag(_DIFFERENCE * sizes)[:columns]
+        changed = np.array([self.mismatch(unknowns + change, self.coarse)[0] for change in changes])
+        return np.asarray(((changed - unchanged) / _DIFFERENCE / of_mismatch).T, dtype=np.float64)
 
     def closed(self, unknowns: FloatArray, slopes: FloatArray) -> Closed[Run]:
         """Close the period by Broyden's method, from unknowns and derivatives that may be rough.
@@ -243,7 +240,7 @@ class Shooting:
         m = support.common_weights.size
         weights = support.common_weights
         if radius >= _FADED:
-            slopes = self.derivatives(closed.unknowns)[:-1, :-1]
+            slopes = self.derivatives(closed.unknowns, 2 * m - 2)[:-1]
             radius = float(np.abs(np.linalg.eigvals(slopes + np.eye(2 * m - 2))).max())
         # Powers are those of the mean speed: the run starts with a common rate whose mean vanishes.
         change = closed.passed.end[:m] - closed.passed.states[0, :m]
