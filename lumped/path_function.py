@@ -43,6 +43,9 @@ _MAX_PIECES = 4000
 _NODES = np.asarray(chebyshev.chebpts1(FIT_DEGREE + 1), dtype=np.float64)
 # Twice as dense as the nodes and all but at the ends, where a jump hides and a root's error is largest.
 _PROBES = np.asarray((1.0 - 1e-6) * chebyshev.chebpts2(2 * FIT_DEGREE + 5), dtype=np.float64)
+#: Positions at which ``fit`` samples a piece, as shares of half of its length: nodes, then probes. Laws that
+#: follow from one computation can share it piece by piece.
+FIT_POINTS = np.concatenate([_NODES, _PROBES])
 _AT_PROBES = np.asarray(chebyshev.chebvander(_PROBES, FIT_DEGREE).T, dtype=np.float64)
 # Chebyshev coefficients from values at the nodes: discrete orthogonality, (2 - [k = 0])/n T_k(x_j)
 _TO_SERIES = np.asarray(chebyshev.chebvander(_NODES, FIT_DEGREE) * (2.0 / _NODES.size), dtype=np.float64)
@@ -199,8 +202,9 @@ class PathFunction:
         result: list[tuple[FloatArray, FloatArray, FloatArray]] = []
         for last in [False] * _MAX_CUTS + [True]:
             half = 0.5 * (high - low)
-            series = _values(function, low, half, _NODES) @ _TO_SERIES
-            error = np.abs(series @ _AT_PROBES - _values(function, low, half, _PROBES)).max(axis=1)
+            values = _values(function, low, half)
+            series = values[:, : _NODES.size] @ _TO_SERIES
+            error = np.abs(series @ _AT_PROBES - values[:, _NODES.size :]).max(axis=1)
             # A piece at the resolution of positions cannot be cut further.
             if by_length:
                 error *= np.minimum(1.0, 2.0 * half / (_FULL_LENGTH * (breaks[-1] - breaks[0])))
@@ -220,8 +224,26 @@ class PathFunction:
             high = np.concatenate([middle, high])
         start, half, series = (np.concatenate(part) for part in zip(*result, strict=True))
         order = np.argsort(start)
-        powers = series[order] @ _TO_POWERS / half[order, None] ** np.arange(FIT_DEGREE + 1)
-        return cls(np.append(start[order], breaks[-1]), powers.T[::-1], np.asarray(switches))
+        coefficients = _coefficients(series[order], half[order])
+        return cls(np.append(start[order], breaks[-1]), coefficients, np.asarray(switches))
+
+    @classmethod
+    def interpolated(
+        cls, function: Callable[[FloatArray], FloatArray], low: float, high: float
+    ) -> PathFunction:
+        """The polynomial of degree ``FIT_DEGREE`` through a callable (k,) -> (k,) at the Chebyshev points.
+
+        For a function that is so smooth that one piece has no error worth a look.
+        """
+        half = 0.5 * (high - low)
+        series = function(low + half * (1.0 + _NODES)) @ _TO_SERIES
+        return cls(np.array([low, high]), _coefficients(series[None], np.array([half])), np.empty(0))
+
+
+def _coefficients(series: FloatArray, half: FloatArray) -> FloatArray:
+    """Coefficients of ``PathFunction``, from series (pieces, terms) on pieces of half lengths (pieces,)."""
+    powers = series @ _TO_POWERS / half[:, None] ** np.arange(FIT_DEGREE + 1)
+    return np.asarray(powers.T[::-1], dtype=np.float64)
 
 
 def shifted(coefficients: Array, by: ArrayLike) -> Array:
@@ -233,11 +255,9 @@ def shifted(coefficients: Array, by: ArrayLike) -> Array:
     return result
 
 
-def _values(
-    function: Callable[[FloatArray], FloatArray], low: FloatArray, half: FloatArray, points: FloatArray
-) -> FloatArray:
-    """Values (pieces, points) at points of [-1, 1] on every piece."""
-    xi = low[:, None] + half[:, None] * (1.0 + points)
+def _values(function: Callable[[FloatArray], FloatArray], low: FloatArray, half: FloatArray) -> FloatArray:
+    """Values (pieces, points) at the ``FIT_POINTS`` of every piece."""
+    xi = low[:, None] + half[:, None] * (1.0 + FIT_POINTS)
     values = function(xi.ravel()).reshape(xi.shape)
     if not np.isfinite(values).all():
         worst = xi[~np.isfinite(values)][0]

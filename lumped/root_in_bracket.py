@@ -1,16 +1,22 @@
-"""The root of a function between two arguments where the function has opposite signs.
+"""The root of a function between two arguments where the function has opposite signs; of many brackets at
+once where the function computes arrays.
 
 ``scipy.optimize.brentq`` computes the same root bit by bit, ``tests/lumped/test_root_in_bracket.py`` compares
 both. Geometry needs a root for each pair that is loaded, and ``scipy.optimize`` takes longer to import than
 the commands ``presets`` and ``init`` take to run.
 
-Source: R. P. Brent, Algorithms for Minimization without Derivatives, 1973, chapter 4.
+Sources: R. P. Brent, Algorithms for Minimization without Derivatives, 1973, chapter 4; many brackets: T. R.
+Chandrupatla, Advances in Engineering Software 28 (1997) 145.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
+
+import numpy as np
+
+from lumped.typing import FloatArray
 
 #: Smallest useful relative tolerance: four roundings.
 ROUNDING = 4.0 * 2.0**-52
@@ -74,6 +80,80 @@ def root_in_bracket(
         now += step if abs(step) > tolerance else math.copysign(tolerance, half)
         f_now = value(now)
     raise RuntimeError(f"Failed to converge after {_MOST_STEPS} iterations, value is {now}.")
+
+
+def roots_in_brackets(
+    function: Callable[[FloatArray], FloatArray], low: FloatArray, high: FloatArray, *, xtol: float
+) -> FloatArray:
+    """Return the roots (n,) of a function (k,) -> (k,), one in each bracket, to xtol + ROUNDING |x|.
+
+    ``low`` and ``high`` (n,) are the ends of the brackets, where the function has opposite signs. All
+    brackets are shortened together: the function is called some ten times, however many brackets there are.
+    A step leads to the root of the inverse parabola through the last three points where that is safe, and
+    halves the bracket elsewhere.
+
+    Raises ValueError where the function has the same sign at both ends or is not a number, and RuntimeError
+    where a hundred steps do not suffice.
+
+    >>> roots_in_brackets(lambda x: x * x - 2.0, np.array([0.0, -2.0]), np.array([2.0, 0.0]), xtol=1e-15)
+    array([ 1.41421356, -1.41421356])
+    """
+    roots = np.array(low, dtype=np.float64)
+    left = np.arange(roots.size)  # brackets whose root is not known yet
+    last = roots.copy()
+    beyond = np.array(high, dtype=np.float64)
+    if not left.size:
+        return roots
+    f_last, f_beyond = np.split(function(np.concatenate([last, beyond])), 2)
+    if not np.all((f_last <= 0.0) & (f_beyond >= 0.0) | (f_last >= 0.0) & (f_beyond <= 0.0)):
+        raise ValueError("A function needs opposite signs at the ends of a bracket.")
+    before = last
+    f_before = f_last
+    for _ in range(_MOST_STEPS):
+        best = np.where(np.abs(f_last) < np.abs(f_beyond), last, beyond)
+        width = np.abs(beyond - last)
+        tolerance = 0.5 * (xtol + ROUNDING * np.abs(best))
+        done = (width < 2.0 * tolerance) | (f_last == 0.0) | (f_beyond == 0.0)
+        roots[left[done]] = best[done]
+        if done.all():
+            return roots
+        left = left[~done]
+        last, f_last, before, f_before, beyond, f_beyond, width, tolerance = (
+            part[~done] for part in (last, f_last, before, f_before, beyond, f_beyond, width, tolerance)
+        )
+        share = _inverse_parabola(last, f_last, beyond, f_beyond, before, f_before)
+        least = tolerance / width
+        trial = last + np.clip(share, least, 1.0 - least) * (beyond - last)
+        f_trial = function(trial)
+        if np.isnan(f_trial).any():
+            raise ValueError("The function value in a bracket is NaN; the solver cannot continue.")
+        same = np.signbit(f_trial) == np.signbit(f_last)
+        before = np.where(same, last, beyond)
+        f_before = np.where(same, f_last, f_beyond)
+        beyond = np.where(same, beyond, last)
+        f_beyond = np.where(same, f_beyond, f_last)
+        last = trial
+        f_last = f_trial
+    raise RuntimeError(f"Failed to converge after {_MOST_STEPS} iterations, value is {last[0]}.")
+
+
+def _inverse_parabola(
+    last: FloatArray,
+    f_last: FloatArray,
+    beyond: FloatArray,
+    f_beyond: FloatArray,
+    before: FloatArray,
+    f_before: FloatArray,
+) -> FloatArray:
+    """Share of the way from ``last`` to ``beyond`` where the inverse parabola has its root; 0.5: unsafe."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        place = (last - beyond) / (before - beyond)
+        value = (f_last - f_beyond) / (f_before - f_beyond)
+        safe = (value**2 < place) & ((1.0 - value) ** 2 < 1.0 - place)
+        secant = f_last / (f_beyond - f_last) * f_before / (f_beyond - f_before)
+        bend = (before - last) / (beyond - last) * f_last / (f_before - f_last)
+        share = secant + bend * f_beyond / (f_before - f_beyond)
+    return np.where(safe, share, 0.5)
 
 
 def _interpolated(

@@ -22,12 +22,12 @@ from lumped.mesh.motion import RIPPLE
 from lumped.mesh.records import FLANKS, QUICK, ContactLaw, Records
 from lumped.mesh.statics import flank_end_gaps
 from lumped.mesh.tables import LAWS, TOOTH, TURNING, MeshTables
+from lumped.mesh.unloaded import RELIEF, couplings, reliefs_at
 from lumped.path_of_contact import friction_path_function
 from lumped.quasi_static.contacts import contact_of
 from lumped.quasi_static.elements import MeshElements, at_rest
-from lumped.quasi_static.load_sharing import coupled
 from lumped.quasi_static.loaded import StaticMesh, loaded_contact
-from lumped.quasi_static.tooth_error import flank_relief, relief_starts
+from lumped.quasi_static.tooth_error import relief_record, relief_starts
 from lumped.schema.bodies import bodies_of
 from lumped.schema.meeting_teeth import first_teeth, period_of
 from lumped.schema.pair import GearPair
@@ -128,10 +128,10 @@ class ToothLaws:
     def of_kind(self, kind: int, xi: FloatArray) -> Records:
         """Return LAWS of a kind at positions xi of any shape [m]."""
         g = self.geometry
-        inside = (xi >= self.low) & (xi <= self.high)
         if self.elements is None:
-            k = np.where(inside, self.mesh.stiffness.extended(xi), 0.0)
-            gap = self.mesh.relief(xi)
+            single = self.mesh.single_pairs(xi.ravel())
+            k = single.stiffness.reshape(xi.shape)
+            gap = single.gap.reshape(xi.shape)
             mass = bodies_of(self.pair).effective_mass
             c = damping_coefficient(self.pair.mesh.damping_ratio, k, mass)
         else:
@@ -171,7 +171,8 @@ class ToothLaws:
             if gear.tip_relief is not None:
                 unit = gear.tip_relief.model_copy(update={"amount": 1.0})
                 radius = flank.wheel.tooth.base_radius
-                shapes["relief"][..., index] = flank_relief(unit, flank.tip / radius, length / radius)
+                relief = np.array([relief_record(unit, flank.tip, radius)], RELIEF)
+                shapes["relief"][..., index] = reliefs_at(relief, length.ravel()).reshape(length.shape)
         return shapes
 
     def ends(self, kind: int) -> tuple[float, ...]:
@@ -281,8 +282,8 @@ def _slopes(
     inside = (nodes > 0.0) & (nodes < 1.0)
     offsets = np.where(inside, -distance, 0.0) + np.multiply.outer([0.0, distance, 2.0 * distance], sense)
     weights = np.where(inside, central[:, None], one_sided[:, None] * sense)
-    values = [function(position + offset[:, None]) for offset in offsets]
-    slopes = np.zeros(values[0].shape, values[0].dtype)
+    values = function(position + offsets[:, None, :, None])
+    slopes = np.zeros(values.shape[1:], values.dtype)
     shape = (1, nodes.size, 1) + (1,) * (slopes.ndim - 3)
     for name in slopes.dtype.names or ():
         slopes[name] = sum(w.reshape(shape) * one[name] for w, one in zip(weights, values, strict=True))
@@ -292,13 +293,13 @@ def _slopes(
 def _coupling(laws: ToothLaws, position: FloatArray) -> FloatArray:
     """Coupling w_ij (steps, nodes, pairs, pairs) of the pairs at positions (steps, nodes, pairs) [m]."""
     pairs = position.shape[2]
-    neighbours = laws.mesh.neighbours if laws.loaded else ()
-    if not neighbours:
+    if not laws.loaded or not laws.mesh.neighbours:
         return np.zeros((*position.shape, pairs))
     near = (position >= laws.low) & (position <= laws.high)
-    # ``coupled`` has the pair behind first, the tables the pair ahead.
-    places = position.reshape(-1, pairs)[:, ::-1]
-    coupling = coupled(neighbours, places, near.reshape(-1, pairs)[:, ::-1])[:, ::-1, ::-1]
+    # ``couplings`` has the pair behind first, the tables the pair ahead.
+    places = np.ascontiguousarray(position.reshape(-1, pairs)[:, ::-1])
+    computed = np.ascontiguousarray(near.reshape(-1, pairs)[:, ::-1])
+    coupling = couplings(laws.mesh.unloaded.neighbours, places, computed)[:, ::-1, ::-1]
     return np.ascontiguousarray(coupling.reshape(*position.shape, pairs))
 
 

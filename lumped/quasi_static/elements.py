@@ -12,17 +12,21 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from scipy.optimize import brentq
 
 from lumped.path_function import PathFunction
+from lumped.root_in_bracket import roots_in_brackets
 from lumped.schema.assumed import Assumed
+from lumped.schema.contact import Lubricant
 from lumped.schema.friction import Friction
 from lumped.schema.pair import GearPair
 from lumped.typing import BoolArray, FloatArray
 
-#: Speed [rad/s] and friction of ``at_rest``. Any values do.
+#: Values of ``at_rest`` in fields that statics does not read. Any values do.
 _SPEED = 100.0
 _FRICTION = Friction.model_construct(law="none")
+_LUBRICANT = Lubricant.model_construct(viscosity=1.0)
+_OF_GEAR = {"inertia": None, "roughness": 0.0}
+_OF_BEARING = {"loa_damping_ratio": 0.0, "oloa_damping_ratio": 0.0}
 #: Samples over the searched range. Between two samples contact begins or ends at most once.
 _SAMPLES = 500
 
@@ -97,11 +101,14 @@ class Contact(ABC):
 
 
 def at_rest(pair: GearPair) -> GearPair:
-    """Return the pair without speed, friction and dampers, on which statics does not depend.
+    """Return the pair without speed, friction, oil, dampers and inertia, on which statics does not depend.
 
     Static results are cached by this pair.
     """
     pair = pair.healthy
+    bearings = {
+        gear: getattr(pair.bearings, gear).model_copy(update=_OF_BEARING) for gear in ("pinion", "gear")
+    }
     fields = {name: getattr(pair, name) for name in GearPair.model_fields}
     fields |= {
         "name": "",
@@ -109,6 +116,10 @@ def at_rest(pair: GearPair) -> GearPair:
         "sources": (),
         "assumed": Assumed(),
         "friction": _FRICTION,
+        "lubricant": _LUBRICANT,
+        "pinion": pair.pinion.model_copy(update=_OF_GEAR),
+        "gear": pair.gear.model_copy(update=_OF_GEAR),
+        "bearings": pair.bearings.model_copy(update=bearings),
         "mesh": pair.mesh.model_copy(update={"damping_ratio": 0.0}),
         "operating": pair.operating.model_copy(update={"pinion_speed": _SPEED}),
     }
@@ -135,18 +146,19 @@ def positive_intervals(
     """
     inside = 1e-12 * pitch
     marks = np.unique(kinks[(kinks > low + inside) & (kinks < high - inside)])
-    ends: list[float] = []
-    for start, end in itertools.pairwise([low, *marks, high]):
-        if end - start <= 4 * inside:
-            continue
-        count = max(3, int(_SAMPLES * (end - start) / (high - low)))
-        xi = np.linspace(start + inside, end - inside, count)
-        positive = function(xi) > 0.0
-        roots = [
-            float(brentq(lambda x: float(function(np.array([x]))[0]), xi[j], xi[j + 1], xtol=1e-16))
-            for j in np.flatnonzero(np.diff(positive))
-        ]
-        ends += [*([start] if positive[0] else []), *roots, *([end] if positive[-1] else [])]
+    smooth = [(a, b) for a, b in itertools.pairwise([low, *marks, high]) if b - a > 4 * inside]
+    counts = [max(3, int(_SAMPLES * (end - start) / (high - low))) for start, end in smooth]
+    parts = [
+        np.linspace(start + inside, end - inside, count)
+        for (start, end), count in zip(smooth, counts, strict=True)
+    ]
+    xi = np.concatenate(parts)
+    positive = function(xi) > 0.0
+    first = np.cumsum([0, *counts])
+    changes = np.setdiff1d(np.flatnonzero(np.diff(positive)), first[1:] - 1)
+    roots = roots_in_brackets(function, xi[changes], xi[changes + 1], xtol=1e-16)
+    starts, stops = np.array(smooth).T
+    ends = np.sort(np.concatenate([starts[positive[first[:-1]]], roots, stops[positive[first[1:] - 1]]]))
     meet = 2 * np.flatnonzero(np.diff(ends)[1::2] <= 4 * inside)  # intervals that meet at a mark are one
     return np.delete(ends, [*(meet + 1), *(meet + 2)]).reshape(-1, 2)
 

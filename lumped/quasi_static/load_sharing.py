@@ -18,8 +18,9 @@ from lumped.arguments import real_array
 from lumped.errors import NumericalError
 from lumped.mesh.records import EXACT, FLANKS, ContactLaw
 from lumped.mesh.statics import Phases, static_approaches, workspace
+from lumped.mesh.unloaded import NeighbourLaws
 from lumped.path_function import PathFunction
-from lumped.typing import BoolArray, FloatArray
+from lumped.typing import FloatArray
 
 #: Flanks without ends, and linear springs that any neighbour may move.
 _ENDLESS = np.array([(-np.inf, np.inf, np.inf, 0.0, 0.0, 0.0, 0.0)], FLANKS)
@@ -100,22 +101,14 @@ def _rows(values: FloatArray, lead: tuple[int, ...], *inner: int) -> FloatArray:
     return np.array(broadcast, dtype=np.float64, order="C")
 
 
-def coupled(neighbours: Sequence[PathFunction], place: FloatArray, near: BoolArray) -> FloatArray:
-    """Coupling w_ij (n, pairs, pairs) by which the load of pair j moves pair i [m/N].
-
-    Parameters
-    ----------
-    neighbours : w_m(xi) of the stiffness model, m = 1, 2, ...
-    place : xi (n, pairs) of pairs that are whole pitches apart; the pair behind is first [m]
-    near : whether a pair is close enough to its path to be computed (n, pairs)
-    """
-    pairs = place.shape[1]
-    coupling = np.zeros((*place.shape, pairs))
-    entries = coupling.reshape(-1, pairs * pairs)  # entry i * pairs + j is w_ij
-    for apart, compliance in enumerate(neighbours, 1):
-        if apart < pairs:
-            both = near[:, :-apart] & near[:, apart:]
-            values = np.where(both, compliance(place[:, :-apart]), 0.0)
-            entries[:, apart : (pairs - apart) * pairs : pairs + 1] = values
-            entries[:, apart * pairs :: pairs + 1] = values
-    return coupling
+def neighbour_laws(functions: Sequence[PathFunction]) -> NeighbourLaws:
+    """Return the functions w_m(xi) of a stiffness model, m = 1, 2, ..., as plain arrays."""
+    sizes = [function.breaks.size for function in functions]
+    order = max([1, *(len(function.coefficients) for function in functions)])
+    first = np.cumsum([0, *sizes])
+    coefficients = np.zeros((order, int(first[-1])))
+    for start, function in zip(first, functions, strict=False):
+        terms, pieces = function.coefficients.shape
+        coefficients[order - terms :, start : start + pieces] = function.coefficients
+    breaks = np.concatenate([np.empty(0), *(function.breaks for function in functions)])
+    return NeighbourLaws(first, breaks, coefficients)

@@ -10,25 +10,25 @@ Sources: docs/theory/contact_energy.md, "Loaded contact of the linear model".
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache, partial
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq
 
 from lumped.errors import NumericalError
 from lumped.mesh.damper import FULL_DAMPING, damping_law
 from lumped.mesh.records import CONTACT, EXACT, FLANKS, ContactLaw, Records
 from lumped.mesh.statics import Phases, middle_contacts, static_approaches, tips_minus_edges, workspace
-from lumped.path_function import PathFunction
+from lumped.mesh.unloaded import RELIEF, PairLaws, unloaded_phases
+from lumped.path_function import FIT_POINTS, PathFunction
 from lumped.path_of_contact import friction_path_function, pair_stiffness
 from lumped.path_of_contact.stiffness import contact_softening, cross_compliances
 from lumped.quasi_static.elements import Contact, MeshElements, at_rest, positive_intervals, restricted
-from lumped.quasi_static.load_sharing import coupled
-from lumped.quasi_static.tooth_error import relief_starts, reliefs_of, sum_of
+from lumped.quasi_static.load_sharing import neighbour_laws
+from lumped.quasi_static.tooth_error import relief_starts, reliefs_of
+from lumped.root_in_bracket import roots_in_brackets
 from lumped.schema.bodies import bodies_of
 from lumped.schema.pair import GearPair
 from lumped.typing import BoolArray, FloatArray
@@ -79,7 +79,7 @@ class Loaded(Contact):
         contact = loaded_contact(rest)
         return MeshElements(
             stiffness=contact.stiffness,
-            damping=_damping(rest, pair.mesh.damping_ratio),
+            damping=_damping(rest, pair.mesh.damping_ratio, bodies_of(pair).effective_mass),
             friction=friction_path_function(pair, interval=contact.stiffness.interval),
             error=contact.error,
             gap=contact.damper_gap,
@@ -102,15 +102,9 @@ class Loaded(Contact):
 
 @dataclass(frozen=True, eq=False)
 class PairStiffness:
-    """k(xi) of a tooth pair at the mean load [N/m]. Beyond A and D the value at A or D holds."""
+    """k(xi) of a tooth pair at the mean load, from A to D [N/m]."""
 
     law: PathFunction
-
-    def extended(self, xi: FloatArray) -> FloatArray:
-        """Return k at positions of any shape, also beyond A and D; never quite zero [N/m]."""
-        low, high = self.law.interval
-        stiffness = self.law(np.clip(xi, low, np.nextafter(high, low)))
-        return np.maximum(stiffness, _LEAST_STIFFNESS * self.largest)
 
     @cached_property
     def largest(self) -> float:
@@ -237,33 +231,39 @@ class StaticMesh:
         self.lengthening = self.force * compliance  # of the line of action, by the bearings
         # Pairs further away than this carry no load.
         reach = int(g.contact_ratio + 2.0 * _REACH)
-        self.shifts = np.arange(-reach, reach + 1) * g.base_pitch
+        self.shifts = np.asarray(np.arange(-reach, reach + 1) * g.base_pitch, dtype=np.float64)
         tips = (g.L_XY - g.tip_length_gear, g.tip_length_pinion)
         edges = (g.undercut_pinion, g.undercut_gear)
         self.flanks = np.array([(*tips, g.L_XY, *edges, 0.0, 0.0)], FLANKS)
         self.low = g.L_XA - _REACH * g.base_pitch
         self.high = g.L_XD + _REACH * g.base_pitch
-        self.reliefs = reliefs_of(pair) if pair.mesh.relief == "static" else []
+        self.unloaded = PairLaws(
+            start=g.L_XA,
+            end=g.L_XD,
+            low=self.low,
+            high=self.high,
+            breaks=self.stiffness.law.breaks,
+            coefficients=self.stiffness.law.coefficients,
+            least_stiffness=_LEAST_STIFFNESS * self.stiffness.largest,
+            reliefs=reliefs_of(pair) if pair.mesh.relief == "static" else np.empty(0, RELIEF),
+            neighbours=neighbour_laws(self.neighbours),
+            lengthening=self.lengthening,
+        )
         self._fitted: PathFunction | None = None
-
-    def relief(self, place: FloatArray) -> FloatArray:
-        """Material missing on both flanks at positions of any shape.
-
-        Beyond A and D the value at A or D [m].
-        """
-        return sum_of(self.reliefs, np.clip(place, self.geometry.L_XA, self.geometry.L_XD))
-
-    def pairs(self, xi: FloatArray) -> tuple[FloatArray, BoolArray]:
-        """Positions (n, pairs) [m] of all pairs around a pair at xi (n,), and which pairs are computed."""
-        place = np.asarray(xi, dtype=float)[:, None] + self.shifts
-        return place, (place > self.low) & (place < self.high)
 
     def phases(self, xi: FloatArray) -> Phases:
         """Return all pairs without load. The middle pair is at xi (n,) [m]."""
-        place, near = self.pairs(xi)
-        stiffness = np.where(near, self.stiffness.extended(place), 0.0)
-        coupling = coupled(self.neighbours, place, near)
-        return Phases(place, stiffness, self.relief(place), coupling, self.lengthening)
+        phases: Phases = unloaded_phases(xi, self.shifts, self.unloaded)
+        return phases
+
+    def single_pairs(self, xi: FloatArray) -> Phases:
+        """Return a pair at xi (n,) [m] without load, without the pairs around it."""
+        pairs: Phases = unloaded_phases(xi, np.zeros(1), self.unloaded)
+        return pairs
+
+    def stiffness_at(self, xi: FloatArray) -> FloatArray:
+        """Return k (n,) at positions (n,), also beyond A and D; never quite zero [N/m]."""
+        return self.single_pairs(xi).stiffness[:, 0]
 
     def approach(self, xi: FloatArray) -> FloatArray:
         """Static approach delta (n,) [m] with a tooth pair at the positions xi (n,) [m]."""
@@ -342,16 +342,52 @@ class StaticMesh:
         return g.undercut_pinion - xi - half if at_start else g.undercut_gear - (g.L_XY - xi) - half
 
 
+class _StaticPieces:
+    """Static pairs at the positions of fits: each piece is computed once, whatever laws are fitted on it."""
+
+    def __init__(self, mesh: StaticMesh) -> None:
+        points = FIT_POINTS.size
+        self._mesh = mesh
+        self._row_of_piece: dict[bytes, int] = {}
+        self._approach = np.empty((0, points))
+        self._contact = np.empty((0, points), CONTACT)
+
+    def __call__(self, xi: FloatArray) -> StaticPair:
+        """Return the pair at xi (n,) [m]: ``FIT_POINTS`` of some pieces, or other positions."""
+        if xi.size % FIT_POINTS.size:
+            return self._mesh.static(xi)
+        pieces = xi.reshape(-1, FIT_POINTS.size)
+        keys = [piece.tobytes() for piece in pieces]
+        new = [piece for piece, key in zip(pieces, keys, strict=True) if key not in self._row_of_piece]
+        if new:
+            self._add(np.array(new))
+        rows = [self._row_of_piece[key] for key in keys]
+        return StaticPair(self._approach[rows].ravel(), self._contact[rows].ravel())
+
+    def _add(self, pieces: FloatArray) -> None:
+        """Compute the pair at the positions of pieces (n, points)."""
+        known = len(self._row_of_piece)
+        shape = (known + len(pieces), FIT_POINTS.size)
+        self._approach.resize(shape, refcheck=False)
+        self._contact.resize(shape, refcheck=False)
+        computed = self._mesh.static(pieces.ravel())
+        self._approach[known:] = computed.approach.reshape(pieces.shape)
+        self._contact[known:] = computed.contact.reshape(pieces.shape)
+        self._row_of_piece |= {piece.tobytes(): known + number for number, piece in enumerate(pieces)}
+
+
 @lru_cache(maxsize=_KEPT)
-def _damping(pair: GearPair, ratio: float) -> PathFunction:
-    """Damping coefficient that acts in the linear form: s f c, of a pair ``at_rest`` with zeta = ``ratio``.
+def _damping(pair: GearPair, ratio: float, mass: float) -> PathFunction:
+    """Damping coefficient that acts in the linear form: s f c, of a pair ``at_rest``.
+
+    ``ratio`` is zeta, ``mass`` the effective mass of both gears [kg].
 
     c is ``lumped.mesh.damper.damping_law``, s the share of the damper at the static load, f the share of the
     approach that compresses the pair.
     """
     contact = loaded_contact(pair)
     low, high = contact.stiffness.interval
-    whole_damper = damping_law(ratio, contact.secant, bodies_of(pair).effective_mass)
+    whole_damper = damping_law(ratio, contact.secant, mass)
 
     def damping(xi: FloatArray) -> FloatArray:
         return whole_damper(xi) * contact.engagement(xi) * contact.closing(xi)
@@ -393,20 +429,14 @@ def loaded_contact(pair: GearPair) -> LoadedContact:
     smooth = stiffness_of.law.breaks[(stiffness_of.law.breaks > low) & (stiffness_of.law.breaks < high)]
     breaks = np.concatenate([[low], inside, [high]])
     pieces = np.union1d(breaks, smooth)
-    largest = float(stiffness_of.extended(np.linspace(low, high, 101)).max())
+    largest = float(mesh.stiffness_at(np.linspace(low, high, 101)).max())
     deflection = mesh.force / largest
     relative = max(_TOLERANCE, _LENGTH / (FULL_DAMPING * deflection))
     # The approach is found by iteration: its error is several times the rounding of positions.
     exact = max(_APPROACH * relative * deflection, 5.0 * _LENGTH)
     mesh.fit_approach(np.concatenate([marks.ravel(), stiffness_of.law.breaks]), exact)
 
-    static_pairs: dict[bytes, StaticPair] = {}
-
-    def static(xi: FloatArray) -> StaticPair:  # several fits ask for the same positions
-        if (key := xi.tobytes()) not in static_pairs:
-            static_pairs[key] = mesh.static(xi)
-        return static_pairs[key]
-
+    static = _StaticPieces(mesh)
     # Without softening and neighbours the laws have the pieces of the stiffness.
     ends = pieces if law.softening == 0.0 and not mesh.neighbours else breaks
 
@@ -417,9 +447,7 @@ def loaded_contact(pair: GearPair) -> LoadedContact:
     # Only the share of the damper has a kink where the whole damper begins to act. Its breaks are those of
     # the stiffness too: laws with the same breaks leave few pieces in a mesh cycle.
     full = FULL_DAMPING * mesh.force
-    bends = inside
-    for start, end in itertools.pairwise(breaks):
-        bends = np.union1d(bends, _roots(lambda x: static(x).load - full, start, end))
+    bends = np.union1d(inside, _roots(lambda x: static(x).load - full, breaks))
     cuts = np.union1d(stiffness.breaks, bends)
 
     def engagement(xi: FloatArray) -> FloatArray:
@@ -449,37 +477,44 @@ def loaded_contact(pair: GearPair) -> LoadedContact:
             lambda xi: static(xi).tilt, error.breaks, inside, tolerance=relative, by_length=True
         ),
         engagement=restricted(engaged, contact),
-        secant=PathFunction.fit(stiffness_of.extended, pieces, inside, tolerance=_TOLERANCE * largest),
+        secant=PathFunction.fit(mesh.stiffness_at, pieces, inside, tolerance=_TOLERANCE * largest),
         contact=contact,
     )
 
 
-def _corners(mesh: StaticMesh, low: float, high: float) -> list[float]:
-    """Positions where a tip corner or an edge begins to touch, or where both exchange [m]."""
+def _corners(mesh: StaticMesh, low: float, high: float) -> FloatArray:
+    """Positions where a tip corner or an edge begins to touch, or where both exchange (n,) [m]."""
+    return np.concatenate([_start_corners(mesh, low), _end_corners(mesh, high)])
+
+
+def _start_corners(mesh: StaticMesh, low: float) -> FloatArray:
+    """The same at the start of the flanks, from ``low`` to the pitch point.
+
+    Without an edge a tip leaves the flank where the pair is half the approach inside the path of contact.
+    """
     g = mesh.geometry
-    places = []
-    # Without an edge a tip leaves the flank where the pair is half the approach inside the path of contact.
     if g.undercut_pinion == 0.0:
-        places += _roots(lambda x: x - g.L_XA - mesh.half_way_out(x), g.L_XA, g.L_XP)
-    else:
-        places += _roots(partial(mesh.tip_minus_edge, True), low, g.L_XP)
-        places += _roots(partial(mesh.beyond_edge, True), low, g.L_XP)
+        return _roots(lambda x: x - g.L_XA - mesh.half_way_out(x), [g.L_XA, g.L_XP])
+    exchanges = _roots(partial(mesh.tip_minus_edge, True), [low, g.L_XP])
+    return np.concatenate([exchanges, _roots(partial(mesh.beyond_edge, True), [low, g.L_XP])])
+
+
+def _end_corners(mesh: StaticMesh, high: float) -> FloatArray:
+    """The same at the end of the flanks, from the pitch point to ``high``."""
+    g = mesh.geometry
     if g.undercut_gear == 0.0:
-        places += _roots(lambda x: g.L_XD - x - mesh.half_way_out(x), g.L_XP, g.L_XD)
-    else:
-        places += _roots(partial(mesh.tip_minus_edge, False), g.L_XP, high)
-        places += _roots(partial(mesh.beyond_edge, False), g.L_XP, high)
-    return places
+        return _roots(lambda x: g.L_XD - x - mesh.half_way_out(x), [g.L_XP, g.L_XD])
+    exchanges = _roots(partial(mesh.tip_minus_edge, False), [g.L_XP, high])
+    return np.concatenate([exchanges, _roots(partial(mesh.beyond_edge, False), [g.L_XP, high])])
 
 
-def _roots(function: Callable[[FloatArray], FloatArray], low: float, high: float) -> list[float]:
-    """Sign changes of a function (n,) -> (n,) between ``low`` and ``high``, at most one in each 64th part."""
-
-    def value_at(x: float) -> float:
-        return float(function(np.array([x]))[0])
-
-    x = np.linspace(low, high, 65)
-    x[[0, -1]] = np.nextafter(low, high), np.nextafter(high, low)
-    values = function(x)
-    changes = np.flatnonzero(np.signbit(values[:-1]) != np.signbit(values[1:]))
-    return [float(brentq(value_at, x[j], x[j + 1], xtol=1e-15)) for j in changes]
+def _roots(function: Callable[[FloatArray], FloatArray], breaks: Sequence[float] | FloatArray) -> FloatArray:
+    """Sign changes of a function (n,) -> (n,) between breaks, at most one in each 64th part of a piece."""
+    low = np.asarray(breaks[:-1])
+    high = np.asarray(breaks[1:])
+    x = np.linspace(low, high, 65, axis=1)
+    x[:, 0] = np.nextafter(low, high)
+    x[:, -1] = np.nextafter(high, low)
+    negative = np.signbit(function(x.ravel()).reshape(x.shape))
+    changes = negative[:, :-1] != negative[:, 1:]
+    return roots_in_brackets(function, x[:, :-1][changes], x[:, 1:][changes], xtol=1e-15)

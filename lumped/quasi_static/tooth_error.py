@@ -9,13 +9,13 @@ Sources: docs/theory/mesh_physics.md, "Load sharing and static transmission erro
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from lumped.mesh.records import Records
 from lumped.mesh.statics import flank_end_gaps
+from lumped.mesh.unloaded import RELIEF, reliefs_at
 from lumped.path_function import PathFunction
 from lumped.typing import FloatArray
 
@@ -25,27 +25,10 @@ if TYPE_CHECKING:
     from lumped.schema.relief import ProfileRelief
 
 
-def flank_relief(relief: ProfileRelief, end: float, roll: FloatArray) -> FloatArray:
-    """Material removed at roll angles of any shape: C s (linear) or C s^2 (parabolic) [m].
-
-    s = (roll - start)/(end - start) where positive; ``end`` [rad] is that of the tip circle for tip
-    relief, of the start of the active flank (the mate's tip, or the edge of an undercut) for root relief.
-    """
-    s = np.maximum((roll - relief.start_roll_angle) / (end - relief.start_roll_angle), 0.0)
-    return np.asarray(relief.amount * (s if relief.shape == "linear" else s**2), dtype=np.float64)
-
-
 def relief_error(pair: GearPair, xi: FloatArray) -> FloatArray:
     """Sum of the reliefs of both flanks at positions xi of any shape [m]."""
-    return sum_of(reliefs_of(pair), xi)
-
-
-def sum_of(reliefs: Sequence[PlacedRelief], xi: FloatArray) -> FloatArray:
-    """Sum of some reliefs of ``reliefs_of`` at positions xi of any shape [m]."""
-    total = np.zeros(np.shape(xi))
-    for relief in reliefs:
-        total = total + relief(np.asarray(xi, dtype=float))
-    return total
+    place = np.asarray(xi, dtype=np.float64)
+    return reliefs_at(reliefs_of(pair), place.ravel()).reshape(place.shape)
 
 
 def error_function(pair: GearPair) -> PathFunction:
@@ -65,7 +48,8 @@ def relief_starts(pair: GearPair) -> FloatArray:
     """Positions strictly between A and D where a relief starts, increasing [m]."""
     low = pair.geometry.L_XA
     high = pair.geometry.L_XD
-    starts = np.array([relief.start for relief in reliefs_of(pair)])
+    reliefs = reliefs_of(pair)
+    starts = reliefs["origin"] + reliefs["sense"] * reliefs["start"] * reliefs["radius"]
     return np.asarray(np.unique(starts[(starts > low) & (starts < high)]), dtype=np.float64)
 
 
@@ -91,38 +75,32 @@ def corner_gap(geometry: Geometry, xi: FloatArray) -> FloatArray:
     return np.asarray((before + behind).reshape(place.shape), dtype=np.float64)
 
 
-@dataclass(frozen=True)
-class PlacedRelief:
-    """One relief of the pair, seen over xi."""
+def relief_record(
+    relief: ProfileRelief, end: float, radius: float, origin: float = 0.0, sense: float = 1.0
+) -> tuple[float, ...]:
+    """Return RELIEF of a relief that reaches its amount at the length ``end`` on the base tangent [m].
 
-    relief: ProfileRelief
-    end: float
-    radius: float
-    origin: float  # xi of the gear's own tangent point
-    sense: float  # +1 where the gear's roll angle grows with xi
-
-    def __call__(self, xi: FloatArray) -> FloatArray:
-        return flank_relief(self.relief, self.end, self.sense * (xi - self.origin) / self.radius)
-
-    @property
-    def start(self) -> float:
-        """Start of the relief as xi [m]."""
-        return self.origin + self.sense * self.relief.start_roll_angle * self.radius
+    ``end`` of tip relief is the tip circle; of root relief the start of the active flank, which is the mate's
+    tip or the edge of an undercut. ``radius``, ``origin`` and ``sense`` are fields of RELIEF. By default xi
+    is the length on the gear's own base tangent.
+    """
+    parabolic = float(relief.shape != "linear")
+    return relief.amount, relief.start_roll_angle, end / radius, parabolic, radius, origin, sense
 
 
-def reliefs_of(pair: GearPair) -> list[PlacedRelief]:
-    """Return the reliefs of both flanks, placed on the path of contact."""
+def reliefs_of(pair: GearPair) -> Records:
+    """Return RELIEF (n,) of both flanks over the path of contact."""
     g = pair.geometry
     sides = (
         ("pinion", pair.pinion, g.base_radius_pinion, g.tip_length_pinion, g.L_XA, 0.0, 1.0),
         ("gear", pair.gear, g.base_radius_gear, g.tip_length_gear, g.L_XY - g.L_XD, g.L_XY, -1.0),
     )
-    reliefs = []
+    reliefs: list[tuple[float, ...]] = []
     for gear_name, gear, radius, tip, root, origin, sense in sides:
         for name, relief, end in (("tip", gear.tip_relief, tip), ("root", gear.root_relief, root)):
             if relief is None or relief.amount == 0.0:
                 continue
             if not root < relief.start_roll_angle * radius < tip:
                 raise relief.off(pair.flank(int(gear_name == "gear")), f"{gear_name}.{name}_relief")
-            reliefs.append(PlacedRelief(relief, end / radius, radius, origin, sense))
-    return reliefs
+            reliefs.append(relief_record(relief, end, radius, origin, sense))
+    return np.array(reliefs, RELIEF)

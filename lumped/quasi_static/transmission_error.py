@@ -16,10 +16,11 @@ from numpy.typing import ArrayLike, NDArray
 from lumped.arguments import real_numbers, whole_number
 from lumped.errors import NumericalError, refuse
 from lumped.labelling import labelled_dataset, provenance
+from lumped.mesh.unloaded import couplings
 from lumped.path_of_contact import pair_stiffness
 from lumped.path_of_contact.stiffness import contact_softening
 from lumped.quasi_static.contacts import contact_of
-from lumped.quasi_static.load_sharing import coupled, share_load
+from lumped.quasi_static.load_sharing import neighbour_laws, share_load
 from lumped.quasi_static.tooth_error import corner_gap, relief_error
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
@@ -94,7 +95,7 @@ def mesh_positions(pair: AnyPair, *, phases: int = 256, extended: bool | None = 
         xi,
         np.where(apart, 0.0, k),
         np.where(apart, np.inf, e),
-        coupled(contact_of(pair).neighbours(pair), xi, ~apart),
+        couplings(neighbour_laws(contact_of(pair).neighbours(pair)), xi, ~apart),
     )
 
 

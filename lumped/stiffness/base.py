@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Callable
+from functools import partial
 from typing import Annotated, Protocol
 
 import numpy as np
@@ -176,9 +177,11 @@ _TERMS = (64, 128)
 
 def fitted_series(function: Callable[[FloatArray], FloatArray], ends: tuple[float, float]) -> PathFunction:
     """Fit a function (n,) -> (n,), analytic over the path, by its Chebyshev series from few evaluations."""
+    from lumped.path_values import series_at
+
     for terms in _TERMS:
-        series = Chebyshev.interpolate(function, terms - 1, ends)
-        tolerance = _TOLERANCE * float(np.abs(series.linspace(terms)[1]).max())
-        if np.abs(series.coef[-terms // 8 :]).max() <= 0.1 * tolerance:
-            return PathFunction.fit(series, ends, tolerance=tolerance)
+        series = np.asarray(Chebyshev.interpolate(function, terms - 1, ends).coef, dtype=np.float64)
+        tolerance = _TOLERANCE * float(np.abs(series_at(series, *ends, np.linspace(*ends, terms))).max())
+        if np.abs(series[-terms // 8 :]).max() <= 0.1 * tolerance:
+            return PathFunction.fit(partial(series_at, series, *ends), ends, tolerance=tolerance)
     return PathFunction.fit(function, ends, tolerance=tolerance)

@@ -14,10 +14,9 @@ from collections.abc import Callable
 from functools import lru_cache, partial
 
 import numpy as np
-from numpy.polynomial import Chebyshev, Polynomial
 
 from lumped.gear_geometry.geometry import Wheel
-from lumped.path_function import FIT_DEGREE, PathFunction
+from lumped.path_function import PathFunction
 from lumped.stiffness.base import Material, MeshingPair
 from lumped.stiffness.foundation import LOCAL_RATIO
 from lumped.typing import FloatArray
@@ -63,14 +62,11 @@ def coupled_pairs(
     g = pair.geometry
     low = g.L_XA - REACH * g.base_pitch
     high = g.L_XD + REACH * g.base_pitch
-    result = []
-    for apart in range(1, math.floor((high - low) / g.base_pitch) + 1):
-        # Analytic and nearly constant: one polynomial for the whole path.
-        ends = (low, high - apart * g.base_pitch)
-        series = Chebyshev.interpolate(partial(motion, apart), FIT_DEGREE, ends).convert(kind=Polynomial)
-        powers = np.asarray(series(Polynomial([low, 1.0])).coef, dtype=np.float64)
-        result.append(PathFunction(np.array(ends), powers[::-1, None], np.empty(0)))
-    return tuple(result)
+    # Analytic and nearly constant: one polynomial for the whole path.
+    return tuple(
+        PathFunction.interpolated(partial(motion, apart), low, high - apart * g.base_pitch)
+        for apart in range(1, math.floor((high - low) / g.base_pitch) + 1)
+    )
 
 
 def _moved(wheel: Wheel, material: Material, length: FloatArray, apart: int, distance: float) -> FloatArray:

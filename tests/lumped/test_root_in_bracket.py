@@ -3,10 +3,11 @@
 import math
 import random
 
+import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from lumped.root_in_bracket import ROUNDING, root_in_bracket
+from lumped.root_in_bracket import ROUNDING, root_in_bracket, roots_in_brackets
 
 
 def drawn_functions(rng):
@@ -51,3 +52,51 @@ def test_a_root_at_an_end_is_that_end(ends):
 def test_what_is_no_number_is_an_error():
     with pytest.raises(ValueError, match="NaN"):
         root_in_bracket(lambda x: math.nan if 0.2 < x < 0.8 else x - 0.5, 0.0, 1.0)
+
+
+#: Simple roots at k pi; at 2.5 of the fifth power, so flat that a secant creeps; a jump at 4.
+FUNCTIONS = {
+    "sine": (
+        np.sin,
+        np.array([-4.0, 2.0, 5.5]),
+        np.array([-2.0, 3.5, 7.0]),
+        np.pi * np.array([-1, 1, 2]),
+    ),
+    "flat": (lambda x: (x - 2.5) ** 5, np.array([-1.0, 2.0]), np.array([4.0, 2.6]), np.array([2.5, 2.5])),
+    "jump": (lambda x: np.where(x < 4.0, -1.0, 1e-6), np.array([3.0]), np.array([9.0]), np.array([4.0])),
+    "end": (lambda x: x * (x - 1.0), np.array([0.0, 0.5]), np.array([0.5, 1.0]), np.array([0.0, 1.0])),
+}
+
+
+class TestManyBrackets:
+    @pytest.mark.parametrize("name", FUNCTIONS)
+    def test_each_root_is_met_to_the_tolerance(self, name):
+        function, low, high, exact = FUNCTIONS[name]
+        roots = roots_in_brackets(function, low, high, xtol=1e-14)
+        if name == "flat":  # the fifth power of 1e-65 is the least number: the function is 0 around the root
+            assert np.abs(roots - exact).max() <= 1e-13
+        else:
+            assert (np.abs(roots - exact) <= 1e-14 + ROUNDING * np.abs(exact)).all()
+
+    def test_all_brackets_share_few_calls(self):
+        calls = []
+
+        def sine(x):
+            calls.append(x.size)
+            return np.sin(x)
+
+        k = np.arange(1, 40)
+        roots = roots_in_brackets(sine, np.pi * k - 1.0, np.pi * k + 1.3, xtol=1e-15)
+        assert np.abs(roots - np.pi * k).max() <= 1e-15 + ROUNDING * 40.0 * np.pi
+        assert len(calls) <= 12  # bisection takes 50
+
+    def test_no_brackets_have_no_roots(self):
+        assert roots_in_brackets(np.sin, np.empty(0), np.empty(0), xtol=1e-15).size == 0
+
+    def test_ends_of_one_sign_and_what_is_no_number_are_errors(self):
+        with pytest.raises(ValueError, match="opposite signs"):
+            roots_in_brackets(np.cos, np.array([-1.0]), np.array([1.0]), xtol=1e-15)
+        with pytest.raises(ValueError, match="NaN"):
+            roots_in_brackets(
+                lambda x: np.where(np.abs(x) < 0.9, np.nan, x), np.array([-1.0]), np.array([1.0]), xtol=1e-15
+            )

@@ -53,7 +53,7 @@ def test_pairs_two_pitches_apart_move_each_other_too():
     assert three.load.min() > 0.0
     w = mesh.neighbours[0](xi[:2])
     far = float(mesh.neighbours[1](xi[0]))
-    compliance = np.diag(1.0 / mesh.stiffness.extended(xi))
+    compliance = np.diag(1.0 / mesh.stiffness_at(xi))
     compliance += np.array([[0.0, w[0], far], [w[0], 0.0, w[1]], [far, w[1], 0.0]])
     assert compliance @ three.load == pytest.approx(three.approach - three.gap, rel=1e-10)
     assert abs(far) > 1e-3 * w[0]
@@ -171,3 +171,24 @@ def test_the_damper_follows_the_gap_and_not_the_error_of_the_tangent():
     assert e.error_slope(xi) == pytest.approx(slope, rel=1e-7)
     # Hertz's contact: the tangent's error falls with the load.
     assert abs(e.error.slope(xi) / slope - 1.0) > 0.01
+
+
+@pytest.mark.parametrize("name", ["contact_ratio_1_1_large_shifts", "larger_gear_drives_contact_lost"])
+def test_contact_is_computed_once_whatever_statics_does_not_read(name):
+    pair = unlike_pair(name)
+    contact = loaded_contact(at_rest(pair))
+    unread = {
+        "operating.pinion_speed": f"{0.9 * pair.operating.pinion_speed!r} rad/s",
+        "mesh.damping_ratio": 0.03,
+        "pinion.inertia": 0.5,
+        "bearings.gear.loa_damping_ratio": 0.01,
+        "lubricant.viscosity": "0.02 Pa s",
+    }
+    for path, value in unread.items():
+        assert loaded_contact(at_rest(pair.with_({path: value}))) is contact, path
+    read = {
+        "operating.pinion_torque": f"{1.01 * pair.operating.pinion_torque!r} N m",
+        "bearings.gear.loa_stiffness": f"{0.5 * pair.bearings.gear.loa_stiffness!r} N/m",
+    }
+    for path, value in read.items():
+        assert loaded_contact(at_rest(pair.with_({path: value}))) is not contact, path
