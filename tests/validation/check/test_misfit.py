@@ -7,10 +7,14 @@ import pytest
 
 from tests.unlike_pairs import unlike_pair
 from tests.validation.check.curves_of_motions import sampled
+from validation.check.curve_orders import drift, without_ramp
 from validation.check.curves import Channel, Curves
 from validation.check.mesh_frequency import mesh_frequency
+from validation.check.misfit import static_value
 from validation.check.problem import Problem
+from validation.check.quantities import quantity_of
 from validation.check.reference import lumped_motion
+from validation.check.settled import settled
 
 SEVERAL = ("dte", "x_p", "y_g", "mesh_force", "bearing_force_y_p")
 NAMES = (
@@ -160,3 +164,41 @@ def test_what_repeats_with_every_cycle_is_no_noise(pair):
     size = 0.05 * np.ptp(sampled(pair, ("mesh_force",)).channels[0].values)
     expected = size * np.sqrt(4.0 * one.orders.orders.size / noisy.settled.used.sum())
     assert 0.5 * expected < one.noise < 1.2 * expected  # by two halves: 12 complex differences
+
+
+def test_static_values_of_rates_and_of_both_torques(pair):
+    """A rate is a mesh frequency [rad/s] times the value; the torques are as the teeth."""
+    motion = lumped_motion(pair)
+    frequency = 2.0 * np.pi / pair.geometry.mesh_period
+    still, rate, acceleration = (
+        static_value(quantity_of(name), motion) for name in ("dte", "dte_dot", "dte_ddot")
+    )
+    assert rate == pytest.approx(frequency * still)
+    assert acceleration == pytest.approx(frequency**2 * still)
+    torques = [static_value(quantity_of(f"mesh_torque_{gear}"), motion) for gear in "pg"]
+    assert torques[0] == pair.operating.pinion_torque
+    assert torques[1] / torques[0] == pytest.approx(pair.gear.teeth / pair.pinion.teeth)
+
+
+@pytest.mark.parametrize(("whole", "period", "cycles", "used"), [
+    (5, 1, 5, 2), (17, 4, 4, 8), (8, 4, 2, 4), (3, 1, 3, 1),
+])  # fmt: skip
+def test_whole_periods_of_the_last_half_are_compared(whole, period, cycles, used):
+    """The last sample lies a step before the end of the last cycle, and ends it."""
+    places = np.arange(64 * whole) / 64
+    channel = Channel("dte", "dte", np.cos(2.0 * np.pi * places))
+    result = settled(Curves("other", "mesh_cycles", places, (channel,)), places, period)
+    assert result.cycles == cycles
+    assert np.count_nonzero(result.used) == 64 * used
+    assert result.used[-1]
+
+
+@pytest.mark.parametrize("acceleration", [0.0, 3e-5, -2e-4])
+def test_the_drift_of_a_rotation_is_that_of_its_parabola_at_the_ends(acceleration):
+    cycles = np.arange(64 * 7) / 64
+    middle = cycles.mean()
+    vibration = 1e-5 * np.cos(2.0 * np.pi * cycles + 0.4) + 4e-6 * np.sin(6.0 * np.pi * cycles)
+    values = vibration + 1e-3 * cycles + acceleration * (cycles - middle) ** 2
+    assert drift(cycles, values) == pytest.approx(abs(acceleration) * (0.5 * np.ptp(cycles)) ** 2, abs=1e-9)
+    left = without_ramp(cycles, values)
+    assert left - left.mean() == pytest.approx(vibration - vibration.mean(), abs=1e-9)
