@@ -202,3 +202,29 @@ def test_the_drift_of_a_rotation_is_that_of_its_parabola_at_the_ends(acceleratio
     assert drift(cycles, values) == pytest.approx(abs(acceleration) * (0.5 * np.ptp(cycles)) ** 2, abs=1e-9)
     left = without_ramp(cycles, values)
     assert left - left.mean() == pytest.approx(vibration - vibration.mean(), abs=1e-9)
+
+
+@pytest.mark.parametrize("quantity", ["mesh_force", "dte"])
+def test_noise_in_few_samples_is_that_of_two_halves(pair, quantity):
+    """In 30 samples a cycle high orders look like white noise, two to twelve times as large."""
+    clean = sampled(pair, (quantity,), per_cycle=30.0, cycles=24).channels[0].values
+    ratios = []
+    for seed in range(8):
+        noisy = problem(pair, quantities=(quantity,), per_cycle=30.0, noise=0.02, cycles=24, seed=seed)
+        orders = noisy.theirs[0].orders.orders.size
+        expected = 0.02 * np.ptp(clean) * np.sqrt(4.0 * orders / noisy.settled.used.sum())
+        ratios.append(noisy.theirs[0].noise / expected)
+    assert np.mean(ratios) == pytest.approx(1.0, abs=0.3)  # a mean of 8 estimates from 12 differences each
+
+
+def test_a_motion_that_fades_is_no_noise(pair):
+    def fading(name, values, time):
+        period = pair.geometry.mesh_period
+        wave = np.cos(12.3 * time / period)
+        return values + 2.0 * np.ptp(values) * np.exp(-time / (4.0 * period)) * wave
+
+    curves = sampled(pair, ("dte",), change=fading, cycles=8)
+    noisy = problem(pair, quantities=("dte",), change=fading, cycles=8, noise=0.003)
+    orders = noisy.theirs[0].orders.orders.size
+    expected = 0.003 * np.ptp(curves.channels[0].values) * np.sqrt(4.0 * orders / noisy.settled.used.sum())
+    assert noisy.theirs[0].noise == pytest.approx(expected, rel=0.3)
