@@ -73,7 +73,7 @@ def test_stiffness_over_the_mesh_cycle(pair):
     assert for_each(places(pair)[0]) == pytest.approx(whole, rel=1e-5)
     g = pair.geometry
     phase = (np.arange(256) + 0.5) / 256
-    for name, most in (("first harmonic", 1), ("three harmonics", 3), ("two levels", 128), ("smoothed", 100)):
+    for name, most in (("first harmonic", 1), ("three harmonics", 3), ("two levels", 128)):
         law = altered_elements(pair, Physics(stiffness=name)).stiffness
         total = sum(law(g.L_XA + (phase + number) * g.base_pitch) for number in range(3))
         right = sum(true(g.L_XA + (phase + number) * g.base_pitch) for number in range(3))
@@ -82,6 +82,51 @@ def test_stiffness_over_the_mesh_cycle(pair):
         assert np.abs(waves[most + 1 :]).max(initial=0.0) < 1e-3 * abs(waves[0])
         if most in (1, 3):
             assert np.abs(waves[1] - original[1]) < 2e-2 * abs(original[1])
+
+
+@pytest.mark.parametrize("window", [0.1, 0.35])
+def test_a_smoothed_stiffness_is_a_moving_average_of_that_of_the_mesh(pair, window):
+    g = pair.geometry
+    phase = (np.arange(512) + 0.5) / 512
+    true, law = (
+        altered_elements(pair, physics).stiffness for physics in (Physics(), Physics(smoothing=window))
+    )
+    right, total = (
+        sum(one(g.L_XA + (phase + number) * g.base_pitch) for number in range(3)) for one in (true, law)
+    )
+    half = round(0.5 * window * 512)
+    average = np.mean([np.roll(right, shift) for shift in range(-half, half + 1)], axis=0)
+    assert total == pytest.approx(average, rel=0.03)  # 30 harmonics: corners are rounded
+
+
+@pytest.mark.parametrize("factor", [0.4, 1.3])
+def test_the_variation_of_the_stiffness_about_its_mean(pair, factor):
+    g = pair.geometry
+    phase = (np.arange(256) + 0.5) / 256
+    true, law = (
+        altered_elements(pair, physics).stiffness for physics in (Physics(), Physics(variation=factor))
+    )
+    right, total = (
+        sum(one(g.L_XA + (phase + number) * g.base_pitch) for number in range(3)) for one in (true, law)
+    )
+    mean = right.mean()
+    assert total == pytest.approx(mean + factor * (right - mean), rel=2e-3)
+    exchanged = altered_elements(pair, Physics(stiffness="levels exchanged")).stiffness
+    total = sum(exchanged(g.L_XA + (phase + number) * g.base_pitch) for number in range(3))
+    assert total == pytest.approx(right.max() + right.min() - right, rel=2e-3)
+
+
+@pytest.mark.parametrize("course", ["pitch point of the rack", "middle of the path"])
+def test_friction_that_reverses_at_another_place(course):
+    shifted = unlike_pair("contact_ratio_1_1_large_shifts").with_(COULOMB)
+    g = shifted.geometry
+    law = altered_elements(shifted, Physics(course=course)).friction
+    rack = g.base_radius_pinion * np.tan(shifted.basic_rack.pressure_angle)
+    place = rack if course.startswith("pitch") else 0.5 * (g.L_XA + g.L_XD)
+    assert abs(place - g.L_XP) > 0.01 * g.base_pitch
+    true = altered_elements(shifted, Physics()).friction
+    xi = np.linspace(g.L_XA, g.L_XD, 102)[1:-1]
+    assert law(xi) == pytest.approx(np.sign(xi - place) * np.abs(true(xi)), rel=1e-5)
 
 
 def test_added_relief_is_removed_at_both_tips(pair):

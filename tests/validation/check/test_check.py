@@ -176,3 +176,15 @@ def test_a_function_that_does_not_read_the_speed_has_no_rung_at_low_speed():
     result = check(pair, lambda parameters: named)
     assert result.low_speed is None
     assert result.agrees
+
+
+def test_a_motion_that_has_not_settled_is_said(pair):
+    def fading(name, values, time):
+        period = pair.geometry.mesh_period
+        wave = np.cos(12.3 * time / period)
+        return values + 0.5 * np.ptp(values) * np.exp(-time / (4.0 * period)) * wave
+
+    fades = check(pair, sampled(pair, ("dte", "x_p"), cycles=8, change=fading), explain=False)
+    assert any(remark.startswith("The motion has not settled") for remark in fades.remarks)
+    settled = check(pair, sampled(pair, ("dte", "x_p"), cycles=8), explain=False)
+    assert not any("settled" in remark for remark in settled.remarks)

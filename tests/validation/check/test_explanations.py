@@ -149,6 +149,7 @@ FREE = {
     "module": 1.07,
     "friction coefficient": 1.5,
     "variation of the mesh stiffness": 0.5,
+    "smoothed mesh stiffness": 0.3,
     "relief added": 0.5,
     "amount of relief": 1.6,
 }

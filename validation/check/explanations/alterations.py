@@ -153,7 +153,6 @@ def _over_cycle(problem: Problem, variant: Variant) -> list[Choice]:
         "first harmonic": "the mean and the first harmonic of the mesh stiffness",
         "three harmonics": "the mean and three harmonics of the mesh stiffness",
         "two levels": "a rectangular mesh stiffness, one value for each number of pairs in contact",
-        "smoothed": "a mesh stiffness without jumps, smoothed over a fifth of the mesh cycle",
     }
     if not _may_vary(problem, variant):
         return []
@@ -172,6 +171,11 @@ def _may_vary(problem: Problem, variant: Variant) -> bool:
 def _variation(variant: Variant, value: float) -> Variant:
     """The variation of the stiffness of the whole mesh times a factor, with prescribed contact."""
     return variant.with_inputs(_PRESCRIBED).with_physics(variation=variant.physics.variation * value)
+
+
+def _smoothing(variant: Variant, value: float) -> Variant:
+    """The stiffness of the whole mesh averaged over a window [mesh cycles], with prescribed contact."""
+    return variant.with_inputs(_PRESCRIBED).with_physics(smoothing=value)
 
 
 def _radius(problem: Problem, variant: Variant) -> list[Choice]:
@@ -249,7 +253,7 @@ def _causes() -> Iterator[Cause]:
         "stiffness over the mesh cycle",
         "another course of the mesh stiffness",
         "reversed, constant, single pair, double pair, shared evenly, whole mesh for each pair, levels "
-        "exchanged, first harmonic, three harmonics, two levels, smoothed",
+        "exchanged, first harmonic, three harmonics, two levels",
         _over_cycle,
     )
     yield Cause(
@@ -260,6 +264,19 @@ def _causes() -> Iterator[Cause]:
         grid=(0.3, 0.6, 1.3, 1.8),
         change=_variation,
         words="the variation of the mesh stiffness about its mean times {value}",
+        applies=lambda problem, variant: (
+            not variant.physics.stiffness and not variant.pair.mesh.stiffness.whole_mesh
+        ),
+    )
+    yield Cause(
+        name="smoothed mesh stiffness",
+        kind=Kind.PHYSICS,
+        meaning="a mesh stiffness without jumps: a moving average over the mesh cycle",
+        span="window of 0.1 to 0.5 mesh cycles",
+        grid=(0.1, 0.2, 0.35, 0.5),
+        neutral=0.0,
+        change=_smoothing,
+        words="a mesh stiffness that is averaged over {value} mesh cycles",
         applies=lambda problem, variant: (
             not variant.physics.stiffness and not variant.pair.mesh.stiffness.whole_mesh
         ),

@@ -12,7 +12,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -46,10 +46,9 @@ _PULLS = -1e-6
 _GROWS = 1.2
 #: Fit error of an altered law over its largest value.
 _TOLERANCE = 1e-7
-#: Places in a mesh cycle at which a stiffness is smoothed, the window in mesh cycles, and its harmonics.
+#: Places in a mesh cycle at which a stiffness is smoothed, and the harmonics of a smoothed stiffness.
 _COURSE = 2048
-_WINDOW = 0.2
-_HARMONICS = 12
+_HARMONICS = 30
 #: Least stiffness of the whole mesh over its mean, where a change would make it negative.
 _LEAST_STIFFNESS = 0.02
 #: Positions closer than this share of the base pitch are one.
@@ -68,7 +67,6 @@ Stiffness = Literal[
     "first harmonic",
     "three harmonics",
     "two levels",
-    "smoothed",
 ]
 Friction = Literal[
     "",
@@ -97,6 +95,7 @@ class Physics:
     damper : law of the dampers of the teeth
     stiffness : change of the stiffness of the tooth pairs over the mesh cycle
     variation : factor on the variation of the stiffness of the whole mesh about its mean
+    smoothing : window of a moving average of the stiffness of the whole mesh [mesh cycles]
     bearings : "rigid": without translations, bearings carry the mesh force; "left out": a torsional model
     """
 
@@ -112,12 +111,13 @@ class Physics:
     damper: Damper = "of each pair"
     stiffness: Stiffness = ""
     variation: float = 1.0
+    smoothing: float = 0.0
     bearings: Bearings = "elastic"
 
     @property
     def of_stiffness(self) -> bool:
         """Whether the stiffness over the mesh cycle is altered."""
-        return bool(self.stiffness) or self.variation != 1.0
+        return bool(self.stiffness) or self.variation != 1.0 or self.smoothing > 0.0
 
     @property
     def of_equations(self) -> bool:
@@ -129,6 +129,7 @@ class Physics:
             "damper": "of each pair",
             "stiffness": "",
             "variation": 1.0,
+            "smoothing": 0.0,
         }
         return replace(self, **of_laws) != Physics()  # type: ignore[arg-type]
 
@@ -218,6 +219,8 @@ def altered_elements(pair: GearPair, physics: Physics) -> MeshElements:
         elements = _with_stiffness(pair, elements, physics.stiffness)
     if physics.variation != 1.0:
         elements = _with_variation(pair, elements, physics.variation)
+    if physics.smoothing > 0.0:
+        elements = _with_smoothing(pair, elements, physics.smoothing)
     if physics.damper != "of each pair":
         factor = damper_factor(pair, elements, physics.damper)
         damping = _fitted(lambda xi: elements.damping(xi) * factor(xi), pair, elements)
@@ -380,7 +383,7 @@ def _with_stiffness(pair: GearPair, elements: MeshElements, change: Stiffness) -
         places = low + (np.arange(_COURSE) + 0.5) / _COURSE * pitch
         both = float(total(places).max() + total(places).min())
         changed = _fitted(lambda xi: stiffness(xi) * (both - total(xi)) / total(xi), pair, elements)
-    elif change in ("first harmonic", "three harmonics", "two levels", "smoothed"):
+    elif change in ("first harmonic", "three harmonics", "two levels"):
         course = _smoother(pair, stiffness, change)
         changed = _fitted(lambda xi: stiffness(xi) * course(xi) / total(xi), pair, elements)
     else:
@@ -429,36 +432,63 @@ def _smoother(
 ) -> Callable[[FloatArray], FloatArray]:
     """Return the stiffness of the whole mesh over xi, with less detail than it has.
 
-    Its mean with one harmonic or three; one value for each number of tooth pairs in contact; or its mean over
-    a fifth of the base pitch.
+    Its mean with one harmonic or three, or one value for each number of tooth pairs in contact.
     """
     low, high = stiffness.interval
-    pitch = pair.geometry.base_pitch
-    total = _total(pair, stiffness)
-    places = low + (np.arange(_COURSE) + 0.5) / _COURSE * pitch
-    values = total(places)
+    course = _course_of(pair, stiffness)
+    places, values = course.places, course.values
     if change == "two levels":
         pairs = _total(pair, PathFunction.constant(1.0, low, high))
         count = np.round(pairs(places))
         levels = {float(number): float(values[count == number].mean()) for number in np.unique(count)}
         numbers, means = np.array(sorted(levels)), np.array([levels[one] for one in sorted(levels)])
         return lambda xi: np.asarray(np.interp(np.round(pairs(xi)), numbers, means), dtype=np.float64)
-    orders = np.arange(1, _COURSE // 8)
-    waves = np.fft.rfft(values)[1 : orders.size + 1] * (2.0 / _COURSE)
-    if change == "smoothed":
-        waves = waves * np.sinc(_WINDOW * orders)
-        orders, waves = orders[:_HARMONICS], waves[:_HARMONICS]
-    else:
-        most = 1 if change == "first harmonic" else 3
-        orders, waves = orders[:most], waves[:most]
-    least = _LEAST_STIFFNESS * float(values.mean())
+    return _of_harmonics(course, np.ones(1 if change == "first harmonic" else 3))
 
-    def course(xi: FloatArray) -> FloatArray:
-        phase = (xi - places[0]) / pitch
-        angle = 2.0 * np.pi * np.multiply.outer(phase, orders)
-        return np.asarray(np.maximum(values.mean() + (np.exp(1j * angle) @ waves).real, least))
 
-    return course
+class _Course(NamedTuple):
+    """The stiffness of the whole mesh [N/m] at equal steps of a base pitch.
+
+    Attributes
+    ----------
+    places : (n,) positions xi [m]
+    values : (n,) stiffness
+    pitch : base pitch [m]
+    """
+
+    places: FloatArray
+    values: FloatArray
+    pitch: float
+
+
+def _course_of(pair: GearPair, stiffness: PathFunction) -> _Course:
+    """The stiffness of the whole mesh over a base pitch."""
+    pitch = pair.geometry.base_pitch
+    places = stiffness.interval[0] + (np.arange(_COURSE) + 0.5) / _COURSE * pitch
+    return _Course(places, _total(pair, stiffness)(places), pitch)
+
+
+def _of_harmonics(course: _Course, gains: FloatArray) -> Callable[[FloatArray], FloatArray]:
+    """The mean of a stiffness and its first harmonics times gains (m,), never below a least stiffness."""
+    orders = np.arange(1, gains.size + 1)
+    waves = np.fft.rfft(course.values)[1 : gains.size + 1] * (2.0 / _COURSE) * gains
+    mean = float(course.values.mean())
+
+    def stiffness(xi: FloatArray) -> FloatArray:
+        angle = 2.0 * np.pi * np.multiply.outer((xi - course.places[0]) / course.pitch, orders)
+        return np.asarray(np.maximum(mean + (np.exp(1j * angle) @ waves).real, _LEAST_STIFFNESS * mean))
+
+    return stiffness
+
+
+def _with_smoothing(pair: GearPair, elements: MeshElements, window: float) -> MeshElements:
+    """Element laws whose stiffness of the whole mesh is averaged over a window [mesh cycles]."""
+    stiffness = elements.stiffness
+    total = _total(pair, stiffness)
+    orders = np.arange(1, _HARMONICS + 1)
+    smooth = _of_harmonics(_course_of(pair, stiffness), np.sinc(window * orders))
+    changed = _fitted(lambda xi: stiffness(xi) * smooth(xi) / total(xi), pair, elements)
+    return _with_law(pair, elements, changed, stiffness.interval)
 
 
 def _linear_motion(system: LTVSystem, physics: Physics) -> xr.Dataset | None:
