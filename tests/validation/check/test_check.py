@@ -146,6 +146,21 @@ def test_arguments_are_refused_before_work(arguments, field):
     assert refusal.value.problems[0].field == field
 
 
+def test_one_channel_that_differs_is_explained_although_the_whole_agrees():
+    pair = unlike_pair(NAMES[0])
+
+    def change(name, values, time):
+        mean = values.mean()
+        return mean + 1.08 * (values - mean) if name == "y_g" else values
+
+    curves = sampled(pair, SEVERAL, change=change)
+    result = check(pair, curves, budget=2.0)
+    rows = {row.channel.channel.name: row.total for row in result.nearer.channels}
+    assert result.agrees, result.words
+    assert rows["y_g"] > result.limit > result.misfit
+    assert result.ladder is not None
+
+
 def test_a_known_phase_is_used():
     pair = unlike_pair(NAMES[0])
     curves = sampled(pair, SEVERAL, phase=0.37)

@@ -167,6 +167,7 @@ READINGS = {
     "another quantity": lambda curves: renamed(curves, "x_p", "bearing_force_x_p"),
     "time reversed": lambda curves: changed(curves, CHANNELS, lambda v: v[::-1]),
     "delay of a channel": lambda curves: changed(curves, ("dte",), lambda v: np.roll(v, 29)),
+    "few mesh orders": lambda curves: changed(curves, CHANNELS, three_orders),
     "moving average": lambda curves: changed(curves, CHANNELS, averaged),
     "axes of the bearing forces": lambda curves: turned(
         curves, 70.0, ("bearing_force_x_p", "bearing_force_y_p")
@@ -209,6 +210,13 @@ def averaged(values, window=0.15, cycles=2):
     """Values through a moving average over a window [mesh cycles], as a circular sum."""
     half = round(0.5 * window * values.size / cycles)
     return np.mean([np.roll(values, shift) for shift in range(-half, half + 1)], axis=0)
+
+
+def three_orders(values, cycles=2):
+    """The mean and the first three mesh orders of values."""
+    waves = np.fft.rfft(values)
+    waves[3 * cycles + 1 :] = 0.0
+    return np.fft.irfft(waves, values.size)
 
 
 #: Channels along and across the line of action.

@@ -124,13 +124,21 @@ def _addendum(pair: GearPair, value: float) -> Fields:
     }
 
 
-def _centre_distance(pair: GearPair, value: float) -> Fields:
-    shifts = {f"{gear}.profile_shift": x for gear, x in zip(_GEARS, pair.profile_shifts, strict=True)}
-    tips = {
+def _tips(pair: GearPair) -> Fields:
+    """Tip diameters of both gears as they are."""
+    return {
         f"{gear}.tip_diameter": to_stated(2.0 * tip, "mm")
         for gear, tip in zip(_GEARS, _tip_radii(pair), strict=True)
     }
-    return {"centre_distance": to_stated(pair.geometry.centre_distance, "mm") * value, **shifts, **tips}
+
+
+def _centre_distance(pair: GearPair, value: float) -> Fields:
+    shifts = {f"{gear}.profile_shift": x for gear, x in zip(_GEARS, pair.profile_shifts, strict=True)}
+    return {
+        "centre_distance": to_stated(pair.geometry.centre_distance, "mm") * value,
+        **shifts,
+        **_tips(pair),
+    }
 
 
 def _module(pair: GearPair, value: float) -> Fields:
@@ -416,17 +424,17 @@ def _pressure_angle(problem: Problem, variant: Variant) -> list[Choice]:
 def _shifts(problem: Problem, variant: Variant) -> list[Choice]:
     first, second = variant.pair.profile_shifts
     choices = []
+    none: dict[str, Any] = {
+        f"{gear}.{field}": value
+        for gear in _GEARS
+        for field, value in (
+            ("profile_shift", 0.0),
+            ("tip_diameter", None),
+            ("addendum", None),
+            ("tip_alteration", None),
+        )
+    }
     if first != 0.0 or second != 0.0:
-        none = {
-            f"{gear}.{field}": value
-            for gear in _GEARS
-            for field, value in (
-                ("profile_shift", 0.0),
-                ("tip_diameter", None),
-                ("addendum", None),
-                ("tip_alteration", None),
-            )
-        }
         choices.append(
             _choice("ignored", "profile shifts ignored", lambda pair: {**none, "centre_distance": None})
         )
@@ -441,7 +449,10 @@ def _shifts(problem: Problem, variant: Variant) -> list[Choice]:
     standard = sum(_reference_radii(variant.pair)) / variant.pair.geometry.centre_distance
     if abs(standard - 1.0) > _SAME_CENTRE:
         words = "the standard centre distance, half of the module times the sum of the teeth"
-        choices.append(_choice("standard centre", words, _times(_centre_distance, standard)))
+        # With the shifts the teeth would wedge: the line of action and the tips are those of the curves.
+        choices.append(
+            _choice("standard centre", words, lambda pair: {**none, **_tips(pair), "centre_distance": None})
+        )
     if first != second:
         exchanged = {"pinion.profile_shift": second, "gear.profile_shift": first}
         words = "the profile shifts of pinion and gear exchanged"
@@ -455,7 +466,10 @@ def _number_of_teeth(problem: Problem, variant: Variant) -> list[Choice]:
     for gear in _GEARS:
         for more in (-1, 1):
             count = getattr(variant.pair, gear).teeth + more
-            fields = {f"{gear}.teeth": count, **_centre_distance(variant.pair, 1.0)}
+            # Another profile shift, so that the tooth has its thickness at the same centre distance.
+            fields = {
+                **_centre_distance(variant.pair, 1.0), f"{gear}.teeth": count, f"{gear}.profile_shift": None
+            }  # fmt: skip
             words = f"a {gear} with {count} teeth"
             choices.append(_choice(f"{gear}: {more:+d}", words, _constant(fields)))
     return choices

@@ -9,7 +9,10 @@ import itertools
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import NamedTuple
+
+import numpy as np
 
 from validation.check.explanations.cause import Cause, Choice, Kind, Variant
 from validation.check.explanations.reading import (
@@ -65,6 +68,8 @@ _TAKES = 0.5
 _MOST_SWAPPED = 12
 #: Time constant of a low-pass filter: mesh cycles over 2 pi. Delay: mesh cycles.
 _TIME_CONSTANT = (0.125, 0.25, 0.5, 1.0, 2.0)
+#: Orders above the last one of the curves: at most so much of theirs, and at least so much of ours.
+_NOTHING, _SOMETHING = 1e-3, 0.01
 _WINDOW = (0.05, 0.1, 0.2, 0.35, 0.5)
 #: Trial angles of axes over a right angle [rad].
 _TURNED = (-1.0, -0.78, -0.5, -0.22, 0.22, 0.5, 0.78, 1.0)
@@ -261,6 +266,24 @@ def _mistaken(problem: Problem, kind: Quantity) -> Iterator[tuple[str, str, floa
         yield "the mesh force", "mesh_force", 1.0
 
 
+def _most_orders(problem: Problem, variant: Variant) -> list[Choice]:
+    """The first mesh orders alone, where the curves have nothing above them and our motion has something."""
+    rows = [row for row in problem.misfit.channels if row.channel.channel.tooth_pair is None]
+    if not rows or variant.reading.most_orders:
+        return []
+    orders = rows[0].ours.orders
+    for most in range(1, int(orders.max())):
+        above = orders > most + 0.5
+        theirs = max(float(np.linalg.norm(row.channel.orders.values[above])) / row.scale for row in rows)
+        if theirs < _NOTHING:
+            ours = max(float(np.linalg.norm(row.ours.values[above])) / row.scale for row in rows)
+            if ours < _SOMETHING:
+                return []
+            words = f"the first {most} mesh orders alone" if most > 1 else "the first mesh order alone"
+            return [_reading(most, words, partial(replace, most_orders=most))]
+    return []
+
+
 def _reversed(problem: Problem, variant: Variant) -> list[Choice]:
     turned = not variant.reading.reversed
     return [_reading("reversed", "time that runs backwards", lambda r: replace(r, reversed=turned))]
@@ -379,6 +402,9 @@ def _causes() -> Iterator[Cause]:
         change=lambda variant, value: variant.with_reading(replace(variant.reading, time_constant=value)),
         words="a low-pass filter of first order at {value} mesh orders",
         shown=lambda value: 1.0 / max(value, 1e-300),
+    )
+    yield read(
+        "few mesh orders", "curves of the first mesh orders alone", "where the curves end", _most_orders
     )
     yield Cause(
         name="moving average",

@@ -40,6 +40,7 @@ class Reading:
     reversed : whether the time runs backwards
     time_constant : of a low-pass filter of first order of all channels, 1 over the mesh order of its cutoff
     window : of a moving average of all channels [mesh cycles]
+    most_orders : largest mesh order that the curves have; 0: all of them
     turned_forces : angle [rad] by which the axes of the bearing forces are turned from the line of action
     turned_axes : angle [rad] by which the axes of all displacements and bearing forces are turned from it
     free_shift : whether the phase that the user states is ignored
@@ -53,6 +54,7 @@ class Reading:
     reversed: bool = False
     time_constant: float = 0.0
     window: float = 0.0
+    most_orders: int = 0
     turned_forces: float = 0.0
     turned_axes: float = 0.0
     free_shift: bool = False
@@ -101,9 +103,11 @@ def _gains(reading: Reading, orders: FloatArray) -> ComplexArray | None:
 
     A low-pass filter of first order has 1/(1 + i m tau), a moving average over w cycles sin(pi m w)/(pi m w).
     """
-    if reading.time_constant <= 0.0 and reading.window <= 0.0:
+    if reading.time_constant <= 0.0 and reading.window <= 0.0 and reading.most_orders == 0:
         return None
     gains = np.sinc(orders * reading.window) / (1.0 + 1j * orders * reading.time_constant)
+    if reading.most_orders:
+        gains = np.where(orders <= reading.most_orders + 1e-9, gains, 0.0)
     return gains.conj() if reading.reversed else gains
 
 
