@@ -129,6 +129,15 @@ def test_friction_that_reverses_at_another_place(course):
     assert law(xi) == pytest.approx(np.sign(xi - place) * np.abs(true(xi)), rel=1e-5)
 
 
+def test_a_profile_error_at_the_mesh_frequency(pair):
+    g = pair.geometry
+    law = altered_elements(pair, Physics(error_cosine=3e-6, error_sine=-4e-6)).error
+    xi = np.linspace(g.L_XA, g.L_XD, 102)[1:-1]
+    angle = 2.0 * np.pi * (xi - g.L_XA) / g.base_pitch
+    true = altered_elements(pair, Physics()).error
+    assert law(xi) - true(xi) == pytest.approx(3e-6 * np.cos(angle) - 4e-6 * np.sin(angle), abs=1e-11)
+
+
 def test_added_relief_is_removed_at_both_tips(pair):
     """Teeth come too late by the amount where a tip touches: at A by that of the gear, at D of the pinion."""
     cause = EXPLANATIONS["relief added"]

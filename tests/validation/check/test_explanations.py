@@ -150,6 +150,8 @@ FREE = {
     "friction coefficient": 1.5,
     "variation of the mesh stiffness": 0.5,
     "smoothed mesh stiffness": 0.3,
+    "profile error: cosine": 0.6,
+    "profile error: sine": -0.6,
     "relief added": 0.5,
     "amount of relief": 1.6,
 }

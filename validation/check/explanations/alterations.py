@@ -13,6 +13,9 @@ from validation.check.explanations.cause import Cause, Choice, Kind, Variant
 from validation.check.explanations.physics import Friction, reversal_of
 from validation.check.problem import Problem
 
+#: Trial amplitudes of a profile error, in steps of so many micrometres.
+_ERRORS = (-1.0, -0.3, 0.3, 1.0)
+_MICROMETRES = 10.0
 #: Inputs of the pair whose stiffness over the mesh cycle is altered.
 _PRESCRIBED = {"mesh.contact": "prescribed", "mesh.relief": "ignored"}
 #: Places closer than this share of the base pitch are one.
@@ -178,6 +181,11 @@ def _smoothing(variant: Variant, value: float) -> Variant:
     return variant.with_inputs(_PRESCRIBED).with_physics(smoothing=value)
 
 
+def _changing_error(wave: str) -> Callable[[Variant, float], Variant]:
+    """Change of a variant by an amplitude of a profile error at the mesh frequency [10 um]."""
+    return lambda variant, value: variant.with_physics(**{f"error_{wave}": 1e-6 * _MICROMETRES * value})
+
+
 def _radius(problem: Problem, variant: Variant) -> list[Choice]:
     if variant.pair.shafts is not None:
         return []
@@ -281,6 +289,21 @@ def _causes() -> Iterator[Cause]:
             not variant.physics.stiffness and not variant.pair.mesh.stiffness.whole_mesh
         ),
     )
+    for wave in ("cosine", "sine"):
+        yield Cause(
+            name=f"profile error: {wave}",
+            kind=Kind.PHYSICS,
+            meaning=f"a profile error of all teeth, a {wave} at the mesh frequency from A on",
+            span="amplitude, about -10 to 10 um",
+            grid=_ERRORS,
+            neutral=0.0,
+            change=_changing_error(wave),
+            words=f"a profile error of all teeth, a {wave} of {{value}} um at the mesh frequency from A on",
+            shown=lambda value: _MICROMETRES * value,
+            applies=lambda problem, variant: (
+                variant.pair.mesh.contact == "prescribed" and variant.pair.healthy is variant.pair
+            ),
+        )
     yield altered("pitch radius", "pitch radii in place of base radii", "1/cos(alpha)", _radius)
     yield altered("supports", "rigid bearings, or a torsional model", "rigid, torsional", _bearings)
     yield altered("shafts left out", "springs in place of shafts", "springs", _shafts)

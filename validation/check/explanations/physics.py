@@ -96,6 +96,7 @@ class Physics:
     stiffness : change of the stiffness of the tooth pairs over the mesh cycle
     variation : factor on the variation of the stiffness of the whole mesh about its mean
     smoothing : window of a moving average of the stiffness of the whole mesh [mesh cycles]
+    error_cosine, error_sine : amplitudes of a profile error of all teeth at the mesh frequency, from A on [m]
     bearings : "rigid": without translations, bearings carry the mesh force; "left out": a torsional model
     """
 
@@ -112,6 +113,8 @@ class Physics:
     stiffness: Stiffness = ""
     variation: float = 1.0
     smoothing: float = 0.0
+    error_cosine: float = 0.0
+    error_sine: float = 0.0
     bearings: Bearings = "elastic"
 
     @property
@@ -130,6 +133,8 @@ class Physics:
             "stiffness": "",
             "variation": 1.0,
             "smoothing": 0.0,
+            "error_cosine": 0.0,
+            "error_sine": 0.0,
         }
         return replace(self, **of_laws) != Physics()  # type: ignore[arg-type]
 
@@ -160,6 +165,8 @@ def motion_of(
         return lumped_motion(pair, recurrence)
     if pair.healthy is not pair or (physics.of_equations and pair.shafts is not None):
         raise NumericalError("This alteration needs like teeth; of the equations of motion, springs too.")
+    if (physics.error_cosine or physics.error_sine) and not prescribed:
+        raise NumericalError("A profile error at the mesh frequency needs prescribed contact.")
     if physics.of_stiffness and not prescribed:
         raise NumericalError("A stiffness over the mesh cycle needs prescribed contact.")
     again = recurrence or pair.pinion.teeth
@@ -221,6 +228,8 @@ def altered_elements(pair: GearPair, physics: Physics) -> MeshElements:
         elements = _with_variation(pair, elements, physics.variation)
     if physics.smoothing > 0.0:
         elements = _with_smoothing(pair, elements, physics.smoothing)
+    if physics.error_cosine or physics.error_sine:
+        elements = _with_error(pair, elements, physics)
     if physics.damper != "of each pair":
         factor = damper_factor(pair, elements, physics.damper)
         damping = _fitted(lambda xi: elements.damping(xi) * factor(xi), pair, elements)
@@ -392,6 +401,22 @@ def _with_stiffness(pair: GearPair, elements: MeshElements, change: Stiffness) -
         interval = (middle - 0.5 * count * pitch, middle + 0.5 * count * pitch)
         changed = PathFunction.constant(one_pair, *interval)
     return _with_law(pair, elements, changed, interval)
+
+
+def _with_error(pair: GearPair, elements: MeshElements, physics: Physics) -> MeshElements:
+    """Element laws with a further error of all teeth: cosine and sine at the mesh frequency, from A on."""
+    g = pair.geometry
+    low, high = elements.error.interval
+
+    def error(xi: FloatArray) -> FloatArray:
+        angle = 2.0 * np.pi * (xi - g.L_XA) / g.base_pitch
+        wave = physics.error_cosine * np.cos(angle) + physics.error_sine * np.sin(angle)
+        return np.asarray(elements.error(xi) + wave)
+
+    breaks = np.concatenate([[low], _marks(pair, (elements.error,), low, high), [high]])
+    size = float(np.abs(error(np.linspace(low, high, 401)[1:-1])).max())
+    fitted = PathFunction.fit(error, breaks, breaks[1:-1], tolerance=_TOLERANCE * max(size, 1e-300))
+    return replace(elements, error=fitted)
 
 
 def _with_variation(pair: GearPair, elements: MeshElements, factor: float) -> MeshElements:
