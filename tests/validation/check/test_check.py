@@ -10,6 +10,7 @@ from tests.validation.check.curves_of_motions import sampled
 from validation.check import Verdict, check
 from validation.check.check import Rung
 from validation.check.curves import Channel, Curves
+from validation.check.overlay import figure_data
 from validation.check.reference import lumped_motion, multibody_motion
 
 SEVERAL = ("dte", "x_p", "y_g", "bearing_force_y_p")
@@ -181,6 +182,8 @@ def test_a_rotation_whose_torques_do_not_balance_drifts():
     brake = float(result.problem.motion.motion.attrs["brake_torque"])
     assert "theta_p" in remark
     assert f"{brake:.5g} N m" in remark
+    drawn = figure_data(result.problem).sel(channel="theta_p")
+    assert np.ptp(drawn["theirs"].to_numpy()) == pytest.approx(np.ptp(drawn["ours"].to_numpy()), rel=0.1)
     assert not check(pair, sampled(pair, ("dte", "theta_p"), cycles=12)).remarks
 
 

@@ -7,14 +7,15 @@ import pytest
 
 from tests.unlike_pairs import unlike_pair
 from tests.validation.check.curves_of_motions import sampled
-from validation.check.curve_orders import drift, without_ramp
+from validation.check.curve_orders import ChannelOrders, drift, without_ramp
 from validation.check.curves import Channel, Curves
 from validation.check.mesh_frequency import mesh_frequency
-from validation.check.misfit import static_value
+from validation.check.misfit import ChannelMisfit, Misfit, static_value
 from validation.check.problem import Problem
 from validation.check.quantities import quantity_of
 from validation.check.reference import lumped_motion
 from validation.check.settled import settled
+from validation.signals.complex_orders import ComplexOrders
 
 SEVERAL = ("dte", "x_p", "y_g", "mesh_force", "bearing_force_y_p")
 NAMES = (
@@ -228,3 +229,19 @@ def test_a_motion_that_fades_is_no_noise(pair):
     orders = noisy.theirs[0].orders.orders.size
     expected = 0.003 * np.ptp(curves.channels[0].values) * np.sqrt(4.0 * orders / noisy.settled.used.sum())
     assert noisy.theirs[0].noise == pytest.approx(expected, rel=0.3)
+
+
+def test_all_tooth_pairs_count_as_one_channel():
+    """e^2 = mean of the squares of dte, .1, and of the tooth loads together, (.3^2 + .5^2)/2."""
+    waves = ComplexOrders(np.array([1.0]), np.array([1.0 + 0.0j]), 0.0, np.zeros((2, 2)))
+
+    def row(channel, size):
+        ours = dataclasses.replace(waves, values=waves.values * (1.0 + size))
+        return ChannelMisfit(ChannelOrders(channel, waves), ours, 1.0, 1.0, compares_mean=False)
+
+    rows = (
+        row(Channel("te", "dte", np.zeros(8)), 0.1),
+        row(Channel("N_A", "normal_load", np.zeros(8), "A"), 0.3),
+        row(Channel("N_B", "normal_load", np.zeros(8), "B"), -0.5),
+    )
+    assert Misfit(rows, 0.0).value == pytest.approx(np.sqrt((0.01 + (0.09 + 0.25) / 2) / 2))

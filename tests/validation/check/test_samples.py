@@ -6,7 +6,8 @@ import pytest
 from tests.unlike_pairs import unlike_pair
 from tests.validation.check.curves_of_motions import sampled
 from validation.check import check
-from validation.check.samples import difference_at_no_order, peaks_to_peak
+from validation.check.samples import difference_at_no_order, peaks_to_peak, samples_of
+from validation.signals.complex_orders import complex_orders
 
 NAMES = ("rack_25_degrees_always_pushing", "heavily_relieved_under_load", "contact_ratio_2_3_on_shafts")
 QUANTITIES = ("dte", "y_g")
@@ -42,6 +43,8 @@ def test_the_peak_to_peak_of_a_model_is_that_of_its_samples(pair):
     (row,) = [one for one in right.problem.misfit.channels if one.channel.channel.name == "dte"]
     same = peaks_to_peak(right.problem, row)
     assert same.theirs == pytest.approx(same.ours, rel=2e-3)  # ours is read linearly between its samples
+    samples = samples_of(right.problem, row.channel.channel)
+    assert samples.ours == pytest.approx(samples.theirs, abs=5e-3 * same.ours)
     table = right.channels.sel(channel="dte")
     assert float(table["their_peak_to_peak"]) == same.theirs
 
@@ -70,6 +73,24 @@ def test_values_with_few_digits_are_said(pair):
     assert remark.startswith("dte is written in steps of ")
     assert "8.3" in remark or "9.1" in remark  # 12 steps, or 11 where both ends are rounded inwards
     assert not [one for one in check(pair, sampled(pair, QUANTITIES)).remarks if "in steps of" in one]
+
+
+def test_a_difference_of_the_orders_is_none_of_the_rest(pair):
+    def larger(name, values, time):
+        mean = values.mean()
+        return mean + 1.2 * (values - mean)
+
+    result = check(pair, sampled(pair, ("dte",), change=larger, cycles=16), explain=False)
+    (row,) = result.problem.misfit.channels
+    assert row.total == pytest.approx(0.2 / 1.2, abs=0.02)
+    right = check(pair, sampled(pair, ("dte",), cycles=16), explain=False).problem
+    samples = samples_of(right, right.misfit.channels[0].channel.channel)
+    orders = np.arange(1.0, 13.0)
+    fitted = complex_orders(samples.cycles, samples.theirs, orders)
+    rest = samples.theirs - fitted.mean - fitted.at(samples.cycles)
+    # A fifth of what our own motion has above the orders.
+    expected = 0.2 * np.sqrt(2.0 * np.mean(rest**2)) / row.scale
+    assert difference_at_no_order(result.problem, row) == pytest.approx(expected, rel=0.2, abs=5e-3)
 
 
 def test_a_model_that_differs_is_told_so_once(pair):

@@ -117,3 +117,25 @@ def test_static_values_of_a_wrong_shape_are_refused(statics, field):
     with pytest.raises(ParameterError) as refusal:
         stated(lumped.load_gear_pair("fzg_c"), **statics)
     assert refusal.value.problems[0].field == field
+
+
+def test_limits_of_static_quantities_from_both_sides_and_their_order():
+    pair = unlike_pair("contact_ratio_1_1_large_shifts")
+    g = pair.geometry
+    mass = lumped.bodies(pair).mass_gear
+    assert stated(pair, base_radius_gear=1.004 * g.base_radius_gear, mass_gear=0.985 * mass).agrees
+    assert stated(pair, centre_distance=0.996 * g.centre_distance).agrees
+    assert wrong(stated(pair, centre_distance=1.006 * g.centre_distance)) == ["centre distance"]
+    # 2 % of a radius is four times its limit, 5 % of a mass two and a half times.
+    both = stated(pair, mass_gear=1.05 * mass, base_radius_gear=0.98 * g.base_radius_gear)
+    assert wrong(both) == ["base radius of the gear", "mass of the gear"]
+
+
+@pytest.mark.parametrize("name", PAIRS)
+def test_natural_frequencies_with_those_of_rigid_motions(name):
+    pair = unlike_pair(name)
+    ours = lumped.natural_frequencies(pair.healthy)
+    assert stated(pair, natural_frequencies=[1e-4, *ours[::-1], 0.0]).agrees
+    assert wrong(stated(pair, natural_frequencies=ours[:-1])) == ["number of natural frequencies"]
+    shifted = [*ours[:-1], 1.04 * ours[-1]]
+    assert wrong(stated(pair, natural_frequencies=shifted)) == [f"natural frequency {len(ours)}"]
