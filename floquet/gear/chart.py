@@ -31,8 +31,8 @@ from floquet.gear.axes import (
     vary,
 )
 from floquet.gear.multipliers import (
-    OffLineOfAction,
     Feedback,
+    OffLineOfAction,
     feedback_system,
     fitted_block,
     gear_block,

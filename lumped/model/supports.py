@@ -243,6 +243,11 @@ class Rigid(Supports):
             deflection=s.deflection[:2] if form == "full" else np.ones(1),
         )
 
+    def forces_by_gear(self, states: FloatArray) -> dict[str, FloatArray]:
+        """No entry: forces of rigid bearings do not follow from displacements, which are zero."""
+        del states
+        return {}
+
     def powers(self, rates: FloatArray) -> dict[str, FloatArray]:
         """No loss."""
         return {"bearings": np.zeros(len(rates))}
