@@ -110,7 +110,7 @@ def closed_form(
 
 
 def _factor(equations: LTVSystem, pairs: PairState, friction_load: FrictionLoad) -> FloatArray:
-    """Factor 1 + mu a of friction on the stiffness of each pair (pairs, k); 1 with friction of a mean load."""
+    """Factor 1 + mu a of friction on the stiffness of each pair (pairs, k); 1 with a mean load."""
     if friction_load == "mean":
         return np.ones_like(pairs.stiffness)
     return 1.0 + pairs.friction * friction_arm(equations, pairs.position)

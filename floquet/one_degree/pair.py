@@ -28,8 +28,10 @@ from floquet.one_degree.linear_segments import LinearSegments
 from lumped.arguments import one_of, real_array, real_number
 from lumped.labelling import provenance
 from lumped.model.periodic_system import LTVSystem
+from lumped.model.powers import power_attributes
 from lumped.model.results import labelled
 from lumped.model.steady import periodic_solution, sample_times
+from lumped.quasi_static.contacts import mesh_elements
 from lumped.quasi_static.elements import mean_of_pairs
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
@@ -42,6 +44,10 @@ if TYPE_CHECKING:
 Stiffness = Literal["pair", "rectangular"]
 #: Variables of ``lumped.steady_state`` that rigid bearings leave out.
 _LEFT_OUT = ("x_p", "x_g", "y_p", "y_g")
+#: Springs of rigid bearings: the static state of loaded contact has their deflection in it.
+_RIGID = {
+    "loa_stiffness": 1e30, "oloa_stiffness": 1e30, "loa_damping_ratio": 0.0, "oloa_damping_ratio": 0.0,
+}  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +56,7 @@ class SingleDegree:
 
     Attributes
     ----------
-    pair : the gear pair of the equation; with rectangular stiffness the pair that has this stiffness
+    pair : the gear pair of the equation: on rigid bearings, with rectangular stiffness where asked for
     mass : effective mass m [kg], 1/m = r_bp^2/J_p + r_bg^2/J_g
     stiffness : k(t) [N/m], the friction that elastic loads make included
     damping : c(t) [N s/m], the friction that damper forces make included
@@ -108,9 +114,9 @@ class SingleDegree:
         Returns
         -------
         xarray.Dataset as of ``lumped.steady_state`` without motions and forces of bearings. The attributes
-        carry ``brake_torque`` and ``pinion_torque`` [N m] that hold the mean speed, ``force``, the constant
-        F = m (r_bp T_p/J_p + r_bg T_g/J_g) [N], ``dte_peak_to_peak`` [m] whatever the sampling,
-        ``spectral_radius`` and ``error_estimate``
+        carry torques, powers and the efficiency as there, ``force``, the constant F [N] of the torques that
+        balance the moments, ``dte_peak_to_peak`` [m] whatever the sampling, ``spectral_radius`` and
+        ``error_estimate``
 
         Raises
         ------
@@ -120,12 +126,10 @@ class SingleDegree:
         torques = np.array([solution.pinion_torque, solution.brake_torque])
         names = [f"{name}{suffix}" for name in _LEFT_OUT for suffix in ("", "_dot")]
         values = {name: array for name, array in solution.values.items() if name not in names}
-        attributes = {
+        attributes = power_attributes(solution) | {
             "title": f"periodic motion of {self.pair.name} with one degree of freedom",
             "supports": "rigid",
             "contact": "linear",
-            "pinion_torque": solution.pinion_torque,
-            "brake_torque": solution.brake_torque,
             "force": float(torques @ force_by_torques(self._equations)),
             "dte_peak_to_peak": solution.peak_to_peak_of("dte"),
             "spectral_radius": solution.spectral_radius,
@@ -197,7 +201,7 @@ def single_degree(pair: AnyPair, *, stiffness: Stiffness = "pair", rtol: float =
     >>> closed = model.closed_form(damper_friction=False)
     """
     rtol = real_number("rtol", rtol, 1e-13, 0.1)
-    variation = GearVariation(_with_stiffness(load_gear_pair(pair), stiffness), supports="rigid")
+    variation = _variation(load_gear_pair(pair), stiffness)
     block = fitted_block(feedback_system(variation), 1.0, max(0.01 * rtol, 1e-13), [])
     equations = LTVSystem.of(variation.pair, "full", supports="rigid")
     mass = float(block.metric[0])
@@ -248,7 +252,7 @@ def single_degree_chart(
     NumericalError
         A point fails; the message names it.
     """
-    variation = GearVariation(_with_stiffness(load_gear_pair(pair), stiffness), supports="rigid")
+    variation = _variation(load_gear_pair(pair), stiffness)
     return stability_chart(
         variation,
         axes,
@@ -261,12 +265,23 @@ def single_degree_chart(
     )
 
 
-def _with_stiffness(pair: GearPair, stiffness: Stiffness) -> GearPair:
-    """The pair, or with "rectangular" stiffness the pair that has it with the same mean mesh stiffness."""
-    if one_of("stiffness", stiffness, get_args(Stiffness)) == "pair":
-        return pair
+def _variation(pair: GearPair, stiffness: Stiffness) -> GearVariation:
+    """The pair on rigid bearings, with its stiffness or with the rectangular one of the same mean."""
+    one_of("stiffness", stiffness, get_args(Stiffness))
+    ranges = {
+        path: spread for path, spread in pair.uncertainty if path.split(".")[0] not in ("bearings", "shafts")
+    }
+    bearings = {"pinion": _RIGID, "gear": _RIGID}
+    rigid = pair.with_({"shafts": None, "bearings": bearings, "uncertainty": ranges})
+    if stiffness == "rectangular":
+        rigid = _rectangular(rigid)
+    return GearVariation(rigid, supports="rigid")
+
+
+def _rectangular(pair: GearPair) -> GearPair:
+    """The pair with constant stiffness of tooth pairs and the same mean mesh stiffness, without errors."""
     g = pair.geometry
-    mean = mean_of_pairs(LTVSystem.of(pair, "mesh", supports="rigid").cycle.elements.stiffness, g.base_pitch)
+    mean = mean_of_pairs(mesh_elements(pair).stiffness, g.base_pitch)
     rectangular = {"model": "rectangular", "pair_stiffness": mean / g.contact_ratio}
     return pair.with_({
         "mesh.stiffness": rectangular, "mesh.contact": "prescribed", "mesh.relief": "ignored",
