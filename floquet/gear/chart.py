@@ -451,8 +451,8 @@ class ChartSlice:
             values = np.concatenate([result.multipliers, separate], axis=1)
             errors = np.concatenate([result.errors, separate_errors], axis=1)
             undamped = damping[members] * self.reference.pair.mesh.damping_ratio == 0.0
-            friction = factors[:, : block.levels].any(axis=1)
-            symplectic = undamped & stays_symmetric(block.feedback, self.reference.supports, friction)
+            rubs = factors[:, : block.levels].any(axis=1)
+            symplectic = undamped & stays_symmetric(block.feedback, self.reference.supports, rubs)
             neutral = stays_bounded(result.multipliers, result.errors, symplectic, block.separate)
             points.put(places[members], values, errors, True, result.multipliers.shape[1], neutral)
 

@@ -72,13 +72,12 @@ def feedback_system(variation: GearVariation) -> Feedback:
     misfit = variation.friction_scale * friction_misfit(variation.pair, interval)
     if variation.supports == "shafts":
         return _leading_modes(system, misfit)
+    metric = 1.0 / np.abs(system.per_load[0])
+    if variation.supports == "rigid":
+        return Feedback(system, metric, (np.zeros(0), np.zeros(0)), misfit)
     s = system.structure
-    off_line = slice(6, None) if variation.supports == "rigid" else slice(4, None)
-    separate = (
-        s.damping[off_line] / (2.0 * s.mass[off_line]),
-        s.stiffness[off_line] / s.mass[off_line],
-    )
-    return Feedback(system, 1.0 / np.abs(system.per_load[0]), separate, misfit)
+    separate = s.damping[4:] / (2.0 * s.mass[4:]), s.stiffness[4:] / s.mass[4:]
+    return Feedback(system, metric, separate, misfit)
 
 
 def stays_symmetric(feedback: Feedback, supports: AnySupports, friction: BoolArray) -> BoolArray:

@@ -56,7 +56,9 @@ class SingleDegree:
 
     Attributes
     ----------
-    pair : the gear pair of the equation: on rigid bearings, with rectangular stiffness where asked for
+    pair : the gear pair
+    rigid_pair : the pair of the equation: the gear pair on rigid bearings, with rectangular stiffness where
+        asked for
     mass : effective mass m [kg], 1/m = r_bp^2/J_p + r_bg^2/J_g
     stiffness : k(t) [N/m], the friction that elastic loads make included
     damping : c(t) [N s/m], the friction that damper forces make included
@@ -65,6 +67,7 @@ class SingleDegree:
     """
 
     pair: GearPair
+    rigid_pair: GearPair
     mass: float
     stiffness: PiecewisePolynomial
     damping: PiecewisePolynomial
@@ -130,13 +133,14 @@ class SingleDegree:
             "title": f"periodic motion of {self.pair.name} with one degree of freedom",
             "supports": "rigid",
             "contact": "linear",
+            "model": "lumped",
             "force": float(torques @ force_by_torques(self._equations)),
             "dte_peak_to_peak": solution.peak_to_peak_of("dte"),
             "spectral_radius": solution.spectral_radius,
             "error_estimate": solution.error,
         }
-        settings = {"samples_per_cycle": samples_per_cycle, "supports": "rigid"}
-        return labelled(solution.time, values, provenance(self.pair, **settings) | attributes)
+        origin = _provenance(self.pair, self.rigid_pair, samples_per_cycle=samples_per_cycle)
+        return labelled(solution.time, values, origin | attributes)
 
     def closed_form(
         self, *, friction_load: FrictionLoad = "dynamic", damper_friction: bool = True
@@ -201,7 +205,8 @@ def single_degree(pair: AnyPair, *, stiffness: Stiffness = "pair", rtol: float =
     >>> closed = model.closed_form(damper_friction=False)
     """
     rtol = real_number("rtol", rtol, 1e-13, 0.1)
-    variation = _variation(load_gear_pair(pair), stiffness)
+    pair = load_gear_pair(pair)
+    variation = _variation(pair, stiffness)
     block = fitted_block(feedback_system(variation), 1.0, max(0.01 * rtol, 1e-13), [])
     equations = LTVSystem.of(variation.pair, "full", supports="rigid")
     mass = float(block.metric[0])
@@ -211,7 +216,8 @@ def single_degree(pair: AnyPair, *, stiffness: Stiffness = "pair", rtol: float =
         for gain in (block.gains.w, block.gains.wd)
     )
     return SingleDegree(
-        pair=variation.pair,
+        pair=pair,
+        rigid_pair=variation.pair,
         mass=mass,
         stiffness=k,
         damping=c,
@@ -252,8 +258,9 @@ def single_degree_chart(
     NumericalError
         A point fails; the message names it.
     """
-    variation = _variation(load_gear_pair(pair), stiffness)
-    return stability_chart(
+    pair = load_gear_pair(pair)
+    variation = _variation(pair, stiffness)
+    chart = stability_chart(
         variation,
         axes,
         friction_law=friction_law,
@@ -263,6 +270,13 @@ def single_degree_chart(
         store=store,
         progress=progress,
     )
+    title = f"stability chart of {pair.name} with one degree of freedom"
+    return chart.assign_attrs(_provenance(pair, variation.pair), title=title)
+
+
+def _provenance(pair: GearPair, rigid_pair: GearPair, **settings: int) -> dict[str, str]:
+    """Attributes about the origin: the parameters are those of the gear pair, the stiffness is that used."""
+    return provenance(pair, **settings) | {"stiffness": rigid_pair.stiffness_words}
 
 
 def _variation(pair: GearPair, stiffness: Stiffness) -> GearVariation:

@@ -45,10 +45,10 @@ def by_moments(pair, time):
 def test_coefficients_are_the_moments_on_both_gears(name):
     pair = pair_of(name)
     model = floquet.single_degree(pair)
-    edges = np.array([0.0, *lumped.mesh_cycle(model.pair).switch_times, model.period])
+    edges = np.array([0.0, *lumped.mesh_cycle(model.rigid_pair).switch_times, model.period])
     shares = np.array([0.07, 0.41, 0.93])
     time = (edges[:-1, None] + np.diff(edges)[:, None] * shares).ravel()
-    mass, k, c, force = by_moments(model.pair, time)
+    mass, k, c, force = by_moments(model.rigid_pair, time)
     assert model.mass == pytest.approx(mass, rel=1e-13)
     # Polynomials of friction laws are fitted to 1e-10 of the largest gain.
     np.testing.assert_allclose(model.stiffness(time), k, rtol=0, atol=1e-9 * k.max())
@@ -147,7 +147,7 @@ def test_without_mesh_damping_friction_leaves_the_pair_neutral(name):
 def test_rectangular_stiffness_keeps_the_mean_of_the_pair(name):
     pair = pair_of(name)
     model = floquet.single_degree(pair, stiffness="rectangular")
-    cycles = [lumped.mesh_cycle(one) for one in (floquet.single_degree(pair).pair, model.pair)]
+    cycles = [lumped.mesh_cycle(one) for one in (floquet.single_degree(pair).rigid_pair, model.rigid_pair)]
     assert cycles[1].mean_stiffness == pytest.approx(cycles[0].mean_stiffness, rel=1e-12)
     time = model.period * (np.arange(400) + 0.5) / 400
     levels = np.unique(np.round(cycles[1].sample(time).stiffness.sum(axis=0) / cycles[1].mean_stiffness, 9))
@@ -165,7 +165,7 @@ def test_friction_of_a_mean_load_is_a_force_and_changes_no_multiplier():
     assert np.abs(model.multipliers.multipliers - mean.multipliers[0]).min() > 1e-6
     g = pair.geometry
     time = (mean.edges[:-1] + mean.edges[1:]) / 2.0
-    pairs = lumped.mesh_cycle(model.pair).sample(time)
+    pairs = lumped.mesh_cycle(model.rigid_pair).sample(time)
     share = (
         pairs.stiffness / pairs.stiffness.sum(axis=0) * pair.operating.pinion_torque / g.base_radius_pinion
     )
@@ -179,7 +179,7 @@ def test_friction_of_a_mean_load_is_a_force_and_changes_no_multiplier():
         ]
     )
     weights = np.repeat(np.diff(mean.edges) / 400, 400) / mean.period
-    pairs = lumped.mesh_cycle(model.pair).sample(fine)
+    pairs = lumped.mesh_cycle(model.rigid_pair).sample(fine)
     motion = mean.motion(fine)
     load = (pairs.stiffness * motion.dte + pairs.damping * motion.dte_dot).sum(axis=0)
     share = (
@@ -201,7 +201,7 @@ def test_nodes_of_a_chart_are_the_model_at_that_speed_damping_and_friction(law):
     for point in ((0, 0, 1), (0, 1, 0), (1, 1, 1)):
         values = {name: axes[name][i] for name, i in zip(axes, point, strict=True)}
         there = floquet.gear_pair_multipliers(
-            vary(GearVariation(floquet.single_degree(pair).pair, supports="rigid"), values)
+            vary(GearVariation(floquet.single_degree(pair).rigid_pair, supports="rigid"), values)
         )
         node = chart.isel(dict(zip(axes, point, strict=True)))
         assert (
