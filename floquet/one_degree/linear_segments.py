@@ -20,7 +20,8 @@ from scipy.special import airy
 
 from floquet.engine.coefficients import PeriodicMatrix, PiecewisePolynomial
 from floquet.engine.system import PeriodicSystem
-from lumped.errors import refuse
+from lumped.arguments import real_number, real_numbers
+from lumped.errors import refuse, shown
 from lumped.typing import ComplexArray, FloatArray, IntArray
 
 #: Least panels of a segment, and Gauss-Legendre nodes of a panel, for the integral of the force.
@@ -79,7 +80,8 @@ class LinearSegments:
 
     Raises
     ------
-    ParameterError : a segment whose damping is not below the critical damping of its stiffness
+    ParameterError : edges that do not increase from 0, arrays of another length, a mass or stiffness that is
+        not positive, a segment whose damping is not below the critical damping of its stiffness
     """
 
     mass: float
@@ -91,9 +93,31 @@ class LinearSegments:
     force_end: FloatArray
 
     def __post_init__(self) -> None:
-        least = np.minimum(self.stiffness_start, self.stiffness_end)
-        critical = 2.0 * np.sqrt(np.maximum(least, 0.0) * self.mass)
-        over = np.flatnonzero(~(self.damping < critical))
+        object.__setattr__(self, "mass", real_number("mass", self.mass, 0.0, above=True, unit="kg"))
+        edges = real_numbers("edges", self.edges, increasing=True, unit="s")
+        if edges.size < 2 or edges[0] != 0.0:
+            raise refuse(
+                "edges", shown(self.edges), "0 and later times", "Begin with 0, end with the period."
+            )
+        object.__setattr__(self, "edges", edges)
+        for name, low, above in (
+            ("stiffness_start", 0.0, True),
+            ("stiffness_end", 0.0, True),
+            ("damping", 0.0, False),
+            ("force_start", -np.inf, False),
+            ("force_end", -np.inf, False),
+        ):
+            values = real_numbers(name, getattr(self, name), low, above=above)
+            if values.size != edges.size - 1:
+                allowed = f"{edges.size - 1} numbers, one a segment"
+                raise refuse(name, f"{values.size} numbers", allowed, "Give one number for each segment.")
+            object.__setattr__(self, name, values)
+        self._check_damping()
+
+    def _check_damping(self) -> None:
+        """Refuse a segment that does not swing."""
+        critical = 2.0 * np.sqrt(np.minimum(self.stiffness_start, self.stiffness_end) * self.mass)
+        over = np.flatnonzero(self.damping >= critical)
         if over.size:
             allowed = f"below {critical[over[0]]:.4g} N s/m, the critical damping of the segment"
             action = "Lower mesh.damping_ratio, or use floquet.monodromy."

@@ -201,8 +201,24 @@ def single_degree(pair: AnyPair, *, stiffness: Stiffness = "pair", rtol: float =
     >>> model = floquet.single_degree(pair, stiffness="rectangular")
     >>> model.multipliers.verdict
     'stable'
-    >>> motion = model.motion()
-    >>> closed = model.closed_form(damper_friction=False)
+
+    Just behind the pitch point friction makes the mesh stiffer than just before it, by (1 + mu a)/(1 - mu a):
+
+    >>> g = pair.geometry
+    >>> pitch = (g.L_XP - g.L_XA) / g.base_pitch * model.period
+    >>> before, behind = model.stiffness([0.999 * pitch, 1.001 * pitch])
+    >>> round(float(behind / before), 3)
+    1.068
+    >>> a = float(model.arm(g.L_XP)[0])
+    >>> round((1 + 0.08 * a) / (1 - 0.08 * a), 3)
+    1.068
+
+    The motion, and the same in closed form without friction of damper forces:
+
+    >>> motion = model.motion(64)
+    >>> closed = model.closed_form(damper_friction=False).motion(motion["time"].to_numpy())
+    >>> bool(abs(closed.dte - motion["dte"].to_numpy()).max() < 0.01 * motion.attrs["dte_peak_to_peak"])
+    True
     """
     rtol = real_number("rtol", rtol, 1e-13, 0.1)
     pair = load_gear_pair(pair)
@@ -257,6 +273,15 @@ def single_degree_chart(
     ParameterError : as of `stability_chart`, an unknown stiffness
     NumericalError
         A point fails; the message names it.
+
+    Examples
+    --------
+    >>> import floquet, lumped
+    >>> pair = lumped.load_gear_pair("fzg_c").with_(law="coulomb")
+    >>> axes = {"speed_rpm": [20000, 47000], "damping_ratio": [0.01, 0.1], "friction_coefficient": [0, 0.1]}
+    >>> chart = floquet.single_degree_chart(pair, axes, stiffness="rectangular")
+    >>> chart["verdict"].sel(damping_ratio=0.01, friction_coefficient=0.1).values.tolist()
+    [1, -1]
     """
     pair = load_gear_pair(pair)
     variation = _variation(pair, stiffness)

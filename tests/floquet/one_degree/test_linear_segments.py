@@ -41,9 +41,9 @@ def over_segments(one, state, time, forced):
             force = one.force_start[j] * (1.0 - s) + one.force_end[j] * s
             return [x[1], (forced * force - one.damping[j] * x[1] - k * x[0]) / one.mass]
 
-        here = time[(time >= low) & (time < high)]
+        times = time[(time >= low) & (time < high)]
         atol = 1e-13 * np.array([1e-6, 1e-2])
-        run = solve_ivp(rate, (low, high), states, "DOP853", np.append(here, high), rtol=3e-14, atol=atol)
+        run = solve_ivp(rate, (low, high), states, "DOP853", np.append(times, high), rtol=3e-14, atol=atol)
         inside.append(run.y[:, :-1])
         states = run.y[:, -1]
     return np.hstack(inside), states
@@ -104,10 +104,24 @@ def test_airy_functions_are_bessel_functions_of_the_order_one_third(falls):
     assert (np.abs(one.monodromy_matrix - expected) < 1e-10 * scale).all()
 
 
-def test_a_damping_above_the_critical_one_is_refused():
-    with pytest.raises(ParameterError, match=r"damping = 2\.5e\+04 N s/m: .*critical damping.*damping_ratio"):
-        LinearSegments(
-            mass=1.0, edges=np.array([0.0, 1e-3]), stiffness_start=np.array([1e8]),
-            stiffness_end=np.array([1.2e8]), damping=np.array([2.5e4]), force_start=np.ones(1),
-            force_end=np.ones(1),
-        )  # fmt: skip
+GOOD = {
+    "mass": 1.0, "edges": [0.0, 4e-4, 1e-3], "stiffness_start": [1e8, 2e8], "stiffness_end": [1.2e8, 2e8],
+    "damping": [100.0, 0.0], "force_start": [1.0, 1.0], "force_end": [1.0, -1.0],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("changes", "words"), [
+    ({"damping": [2.5e4, 0.0]}, r"damping = 2\.5e\+04 N s/m: .*2e\+04.*critical damping.*damping_ratio"),
+    ({"damping": [-1.0, 0.0]}, "damping"),
+    ({"mass": 0.0}, "mass"),
+    ({"edges": [0.0, 1e-3, 4e-4]}, "edges"),
+    ({"edges": [1e-4, 4e-4, 1e-3]}, "edges = .*0 and later times"),
+    ({"stiffness_end": [1.2e8, 0.0]}, "stiffness_end"),
+    ({"stiffness_start": [1e8]}, "stiffness_start = 1 numbers: .*2 numbers, one a segment"),
+    ({"force_end": [np.nan, 1.0]}, "force_end"),
+    ({"force_start": "much"}, "force_start"),
+])  # fmt: skip
+def test_what_has_no_such_motion_is_refused(changes, words):
+    assert LinearSegments(**GOOD).motion(np.array([0.0])).dte.size == 1
+    with pytest.raises(ParameterError, match=words):
+        LinearSegments(**(GOOD | changes))

@@ -102,10 +102,16 @@ def test_six_degrees_on_stiff_bearings_go_to_one_in_proportion_to_the_give(name,
     assert np.abs(of_torque).max() < 1e-5
 
 
+@pytest.mark.parametrize("brake_torque", ["balanced", 90.0])
 @pytest.mark.parametrize("name", UNLIKE)
-def test_motion_holds_the_mean_speed_and_is_the_closed_form(name):
+def test_motion_holds_the_mean_speed_and_is_the_closed_form(name, brake_torque):
     """Means of the moments on both gears are the torques; with constant mu the motion is in closed form."""
-    pair = pair_of(name).with_(law="coulomb", friction__coefficient=0.09, mesh__damping_ratio=0.0)
+    pair = pair_of(name).with_(
+        law="coulomb",
+        friction__coefficient=0.09,
+        mesh__damping_ratio=0.0,
+        operating__brake_torque=brake_torque,
+    )
     model = floquet.single_degree(pair, stiffness="rectangular")
     motion = model.motion(64)
     closed = model.closed_form()
@@ -127,7 +133,7 @@ def test_motion_holds_the_mean_speed_and_is_the_closed_form(name):
 @pytest.mark.parametrize("name", ["larger_gear_drives_contact_lost", "contact_ratio_2_3_on_shafts"])
 def test_without_mesh_damping_friction_leaves_the_pair_neutral(name):
     """One coordinate: tr A = -c/m = 0 with friction too, so that det M = 1; not so with six degrees."""
-    pair = pair_of(name).with_(law="composite", mesh__damping_ratio=0.0)
+    pair = pair_of(name).with_(law="composite", mesh__damping_ratio=0.0, mesh__contact="prescribed")
     model = floquet.single_degree(pair)
     assert model.multipliers.symplectic
     assert model.multipliers.verdict == "neutral"
@@ -200,14 +206,15 @@ def test_nodes_of_a_chart_are_the_model_at_that_speed_damping_and_friction(law):
     assert chart.sizes["multiplier"] == 2
     for point in ((0, 0, 1), (0, 1, 0), (1, 1, 1)):
         values = {name: axes[name][i] for name, i in zip(axes, point, strict=True)}
-        there = floquet.gear_pair_multipliers(
+        direct = floquet.gear_pair_multipliers(
             vary(GearVariation(floquet.single_degree(pair).rigid_pair, supports="rigid"), values)
         )
         node = chart.isel(dict(zip(axes, point, strict=True)))
         assert (
-            abs(float(node["spectral_radius"]) - there.spectral_radius) <= float(node["error"]) + there.error
+            abs(float(node["spectral_radius"]) - direct.spectral_radius)
+            <= float(node["error"]) + direct.error
         )
-        assert int(node["verdict"]) == {"neutral": 2, "stable": 1}[there.verdict]
+        assert int(node["verdict"]) == {"neutral": 2, "stable": 1}[direct.verdict]
     plot(chart.isel(friction_coefficient=1))
 
 
@@ -256,6 +263,8 @@ def test_what_has_no_closed_form_says_so(changes, arguments, words):
 
 def test_wrong_arguments_are_refused():
     pair = pair_of("contact_ratio_1_1_large_shifts")
+    with pytest.raises(ParameterError, match=r"supports = rigid: .*springs, shafts"):
+        lumped.steady_state(pair, supports="rigid")
     with pytest.raises(ParameterError, match=r"stiffness = square: .*pair, rectangular"):
         floquet.single_degree(pair, stiffness="square")
     with pytest.raises(ParameterError, match="rtol"):
