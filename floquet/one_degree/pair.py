@@ -284,11 +284,12 @@ def single_degree_chart(
     [1, -1]
     """
     pair = load_gear_pair(pair)
+    if friction_law is not None:
+        pair = pair.with_({"friction.law": friction_law})
     variation = _variation(pair, stiffness)
     chart = stability_chart(
         variation,
         axes,
-        friction_law=friction_law,
         refine=refine,
         prove=prove,
         rtol=rtol,

@@ -1,5 +1,7 @@
 """Is the model with one degree of freedom the gear pair on rigid bearings?"""
 
+import tomllib
+
 import numpy as np
 import pytest
 
@@ -198,10 +200,12 @@ def test_friction_of_a_mean_load_is_a_force_and_changes_no_multiplier():
 
 @pytest.mark.parametrize("law", LAWS)
 def test_nodes_of_a_chart_are_the_model_at_that_speed_damping_and_friction(law):
-    pair = pair_of("larger_gear_drives_contact_lost").with_(law=law)
+    before = pair_of("larger_gear_drives_contact_lost").with_(law="iso_14179")
+    pair = before.with_(law=law)
     axes = {"speed_rpm": [1900.0, 4700.0], "damping_ratio": [0.0, 0.03], "friction_coefficient": [0.0, 0.06]}
-    chart = floquet.single_degree_chart(pair, axes, store="all")
+    chart = floquet.single_degree_chart(before, axes, friction_law=law, store="all")
     assert chart.attrs["supports"] == "rigid"
+    assert lumped.load_gear_pair(tomllib.loads(chart.attrs["parameters"])) == pair
     assert chart.attrs["certificate"] == "proven"
     assert chart.sizes["multiplier"] == 2
     for point in ((0, 0, 1), (0, 1, 0), (1, 1, 1)):
