@@ -247,6 +247,7 @@ def test_the_motion_is_drawn_and_named():
     assert "bearing_force_x_p" not in motion
     assert {"dte", "normal_load", "friction_force", "sliding_velocity"} <= set(motion.data_vars)
     assert motion["theta_p"].attrs["units"] == "rad"
+    assert len(plot(motion).axes) == 2
 
 
 COULOMB = {"law": "coulomb", "friction__coefficient": 0.05}
