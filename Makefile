@@ -26,6 +26,7 @@ report: $(VENV)/.ready
 
 reproduce: $(VENV)/.ready
 	$(BIN)/python -m reproductions.he_cho_singh_2008 build/reproductions/he_cho_singh_2008
+	$(BIN)/python -m reproductions.vaishya_singh_2001 build/reproductions/vaishya_singh_2001
 
 evidence: $(VENV)/.ready-test
 	$(BIN)/python -m tests.evidence

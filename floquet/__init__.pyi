@@ -38,6 +38,10 @@ from .gear.tongues import campbell as campbell
 from .gear.tongues import predicted_lines as predicted_lines
 from .gear.tongues import stability_boundaries as stability_boundaries
 from .gear.tongues import stability_margins as stability_margins
+from .one_degree.linear_segments import LinearSegments as LinearSegments
+from .one_degree.pair import SingleDegree as SingleDegree
+from .one_degree.pair import single_degree as single_degree
+from .one_degree.pair import single_degree_chart as single_degree_chart
 from .rank_one.batch import FastMonodromy as FastMonodromy
 from .rank_one.batch import fast_monodromies as fast_monodromies
 from .rank_one.batch import fast_multipliers as fast_multipliers

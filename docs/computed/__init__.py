@@ -36,6 +36,7 @@ def writers() -> Mapping[str, Callable[[], str]]:
         rankings,
         reference_cases,
         schema,
+        vaishya_singh,
         verification,
     )
 
@@ -48,6 +49,7 @@ def writers() -> Mapping[str, Callable[[], str]]:
             agreement,
             errata,
             paper,
+            vaishya_singh,
             rankings,
             reference_cases,
             schema,

@@ -23,7 +23,7 @@ from lumped.friction.base import PITCH_RESOLUTION, ContactPath, FrictionLaw, Fri
 from lumped.friction.benedict_kelley import LAW as BENEDICT_KELLEY
 from lumped.friction.registry import law_of
 from lumped.model.mesh_cycle import MeshCycle
-from lumped.model.periodic_system import Supports, supports_of
+from lumped.model.periodic_system import AnySupports, Supports, supports_of
 from lumped.path_of_contact.friction import contact_path, fit_law, violations_of
 from lumped.ranges import warn_violations
 from lumped.schema.files import AnyPair, load_gear_pair
@@ -44,13 +44,13 @@ class GearVariation:
     pair : the validated pair
     friction_mean : wanted mean of |mu| over the path; None: as the law gives it
     stiffness_variation : factor on the variation of the total mesh stiffness about its mean over the cycle
-    supports : "springs", the pair's ``bearings``, or its "shafts"
+    supports : "springs", the pair's ``bearings``, its "shafts", or "rigid" bearings
     """
 
     pair: GearPair
     friction_mean: float | None = None
     stiffness_variation: float = 1.0
-    supports: Supports = field(kw_only=True)
+    supports: AnySupports = field(kw_only=True)
 
     @classmethod
     def of(cls, source: AnyPair | GearVariation, supports: Supports | None = None) -> GearVariation:
@@ -191,7 +191,7 @@ GEAR_AXES: Mapping[str, GearAxis] = {
 """Axis name -> axis."""
 
 
-def gear_grid(axes: Axes, supports: Supports) -> dict[str, FloatArray]:
+def gear_grid(axes: Axes, supports: AnySupports) -> dict[str, FloatArray]:
     """Axes of gear-pair parameters as 1-D arrays, or the refusal of names, values or supports."""
     grid = checked_axes(axes)
     for name, values in grid.items():
@@ -201,8 +201,11 @@ def gear_grid(axes: Axes, supports: Supports) -> dict[str, FloatArray]:
     return grid
 
 
-def _check_springs(supports: Supports) -> None:
+def _check_springs(supports: AnySupports) -> None:
     """Refuse to vary springs that hold nothing."""
+    if supports == "rigid":
+        action = "Take the chart of the pair on springs: stability_chart(pair, axes)."
+        raise refuse("axes", "bearing_stiffness", "not on rigid bearings", action)
     if supports == "shafts":
         action = 'Set shafts.pinion.bearings.1.loa_stiffness and so on, or give supports="springs".'
         raise refuse("axes", "bearing_stiffness", "not with shafts", action)

@@ -31,12 +31,13 @@ from floquet.gear.axes import (
     vary,
 )
 from floquet.gear.multipliers import (
+    Feedback,
     OffLineOfAction,
     feedback_system,
     fitted_block,
     gear_block,
-    keeps_energy,
     stays_bounded,
+    stays_symmetric,
 )
 from floquet.rank_one.batch import fast_monodromies, fast_multipliers
 from floquet.rank_one.boxes import proven_cells
@@ -61,7 +62,7 @@ _NAMED = 200  # largest number of regions that are named
 
 
 def stability_chart(
-    pair: AnyPair,
+    pair: AnyPair | GearVariation,
     axes: Axes | None = None,
     *,
     friction_law: str | None = None,
@@ -83,7 +84,7 @@ def stability_chart(
 
     Parameters
     ----------
-    pair : the gear pair
+    pair : the gear pair, or a variation of it
     axes : name -> values, names out of `GEAR_AXES`: speed_rpm, damping_ratio (mesh), friction_coefficient,
         torque, stiffness_variation, bearing_stiffness, in their stated units; at most 25 million points;
         default 801 speeds about the operating speed and 201 mesh damping ratios
@@ -309,14 +310,14 @@ class _FamilyBlock(NamedTuple):
     separate : motions that the mesh does not couple
     levels : number of the parts of the gains that have a factor of friction
     period_times_rpm : mesh period [s] times pinion speed [rpm]
-    keeps_energy : see `keeps_energy`
+    feedback : the coordinates of the system
     """
 
     system: RankOneSystem
     separate: OffLineOfAction
     levels: int
     period_times_rpm: float
-    keeps_energy: bool
+    feedback: Feedback
 
 
 class ChartSlice:
@@ -380,9 +381,8 @@ class ChartSlice:
             levels += [] if family.level is None else [family.level]
             block = fitted_block(feedback, variation.stiffness_variation, max(0.01 * rtol, 1e-12), levels)
             period_times_rpm = block.period * operating_rpm(variation.pair)
-            energy = keeps_energy(feedback, variation.supports)
             self._blocks[k] = _FamilyBlock(
-                block, OffLineOfAction.of(feedback), len(levels), period_times_rpm, energy
+                block, OffLineOfAction.of(feedback), len(levels), period_times_rpm, feedback
             )
         return self._blocks[k]
 
@@ -451,10 +451,9 @@ class ChartSlice:
             values = np.concatenate([result.multipliers, separate], axis=1)
             errors = np.concatenate([result.errors, separate_errors], axis=1)
             undamped = damping[members] * self.reference.pair.mesh.damping_ratio == 0.0
-            symplectic = undamped & ~factors[:, : block.levels].any(axis=1)
-            neutral = stays_bounded(
-                result.multipliers, result.errors, symplectic & block.keeps_energy, block.separate
-            )
+            rubs = factors[:, : block.levels].any(axis=1)
+            symplectic = undamped & stays_symmetric(block.feedback, self.reference.supports, rubs)
+            neutral = stays_bounded(result.multipliers, result.errors, symplectic, block.separate)
             points.put(places[members], values, errors, True, result.multipliers.shape[1], neutral)
 
 

@@ -28,7 +28,7 @@ from floquet.rank_one.system import Gains, RankOneSystem
 from lumped.arguments import one_of, real_number
 from lumped.compiler import in_threads
 from lumped.mesh.tables import RIPPLES
-from lumped.model.periodic_system import LTVSystem, Supports
+from lumped.model.periodic_system import AnySupports, LTVSystem, Supports
 from lumped.model.supports import Form
 from lumped.model.tooth_laws import ToothLaws
 from lumped.path_of_contact.friction import friction_misfit
@@ -47,14 +47,15 @@ _SMALLEST = -250.0  # logarithm of the smallest product of these cycles
 
 @dataclass(frozen=True, eq=False)
 class Feedback:
-    """The coordinates that the mesh couples: three on springs, on shafts at most `MODES` modes.
+    """The coordinates that the mesh couples: three on springs, one on rigid bearings, at most `MODES` modes.
 
     Attributes
     ----------
     system : x' = A(t) x in these coordinates; modes of a pair on shafts have unit modal mass
     metric : (m,) weights of the norm of errors; they make the frictionless mesh symmetric
     separate : decay rates [1/s] and squares of the natural frequencies (k,) of motions that the mesh does not
-        couple: on springs off the line of action, on shafts the modes of least importance
+        couple: on springs off the line of action, on shafts the modes of least importance, on rigid bearings
+        none
     misfit : (pieces,) bound on the error of the polynomials of mu
     """
 
@@ -71,23 +72,33 @@ def feedback_system(variation: GearVariation) -> Feedback:
     misfit = variation.friction_scale * friction_misfit(variation.pair, interval)
     if variation.supports == "shafts":
         return _leading_modes(system, misfit)
+    metric = 1.0 / np.abs(system.per_load[0])
+    if variation.supports == "rigid":
+        return Feedback(system, metric, (np.zeros(0), np.zeros(0)), misfit)
     s = system.structure
     separate = s.damping[4:] / (2.0 * s.mass[4:]), s.stiffness[4:] / s.mass[4:]
-    return Feedback(system, 1.0 / np.abs(system.per_load[0]), separate, misfit)
+    return Feedback(system, metric, separate, misfit)
 
 
-def keeps_energy(feedback: Feedback, supports: Supports) -> bool:
-    """Whether the parameters state that without friction and mesh damping nothing drives or damps the motion.
+def stays_symmetric(feedback: Feedback, supports: AnySupports, friction: BoolArray) -> BoolArray:
+    """Whether the parameters state that without mesh damping M z'' + K(t) z = 0 with symmetric K(t), (k,).
 
-    On springs without damping, and without tip corners, whose force is not normal to the flanks: M z'' +
-    (K + k(t) v v^T) z = 0 with a symmetric matrix, whatever k(t). On shafts modes are rounded: False.
+    With one coordinate every K(t) is symmetric, also that of friction. Else this is so without friction, on
+    springs without damping and without tip corners, whose force is not normal to the flanks: K + k(t) v v^T.
+    On shafts modes are rounded: False.
+
+    Parameters
+    ----------
+    friction : (k,) whether friction acts
     """
+    if supports == "rigid":
+        return np.ones(np.shape(friction), dtype=bool)
     system = feedback.system
     m = system.deflection.size
     damped = bool(system.constant[m:, m:].any())
     tilt = system.cycle.elements.tilt
     on_line = tilt is None or not tilt.coefficients.any()
-    return supports == "springs" and not damped and on_line
+    return np.asarray(~friction & (supports == "springs" and not damped and on_line))
 
 
 def stays_bounded(
@@ -239,6 +250,8 @@ def fitted_block(feedback: Feedback, factor: float, rtol: float, levels: Sequenc
 @dataclass(frozen=True, eq=False)
 class GearPairMultipliers(Spectrum):
     """Multipliers of a gear pair over one mesh cycle, 10 in all; on shafts two for each mode.
+
+    Of `single_degree` there are two.
 
     The double +1 of the free rotation is not included: angle and speed of the pair are arbitrary.
 
@@ -432,11 +445,9 @@ def gear_pair_multipliers(
 def _proven(feedback: Feedback, variation: GearVariation, rtol: float) -> Spectrum:
     """Multipliers of the feedback block by the compiled kernel."""
     block = fitted_block(feedback, variation.stiffness_variation, max(0.01 * rtol, 1e-13), [])
-    friction = feedback.system.cycle.elements.friction.coefficients
-    symplectic = (
-        variation.pair.mesh.damping_ratio == 0.0
-        and not friction.any()
-        and keeps_energy(feedback, variation.supports)
+    friction = np.array(feedback.system.cycle.elements.friction.coefficients.any())
+    symplectic = variation.pair.mesh.damping_ratio == 0.0 and bool(
+        stays_symmetric(feedback, variation.supports, friction)
     )
     result = fast_multipliers(block, tolerance=max(1e-4 * rtol, 1e-14))
     order = np.argsort(-np.abs(result.multipliers[0]), kind="stable")

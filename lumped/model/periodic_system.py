@@ -27,6 +27,8 @@ from lumped.typing import FloatArray
 
 #: Supports of the gears: four springs, or the elastic shafts of the parameter file in their bearings.
 Supports = Literal["springs", "shafts"]
+#: The same, and the rigid bearings of ``floquet.single_degree``, which no argument asks for.
+AnySupports = Literal["springs", "shafts", "rigid"]
 
 
 def supports_of(pair: GearPair, supports: Supports | None) -> Supports:
@@ -93,7 +95,7 @@ class LTVSystem:
         "mesh" (q, x_p, x_g: the 6 states that decide stability). On shafts z are modal coordinates of
         the shafts with the teeth apart: in "full" the common rotation is first and the relative rotation
         second; "elastic" and "mesh" are the same and lack the common rotation, because gyroscopic moments
-        couple y
+        couple y. On rigid bearings "full" has theta_p and theta_g, "elastic" and "mesh" have q
     coordinates : names of z, (m,)
     cycle : mesh cycle with positions, switch times and coefficients of the tooth pairs
     constant : (2m, 2m) part of A that does not depend on time. On springs the blocks are diagonal, because
@@ -136,7 +138,7 @@ class LTVSystem:
         *,
         as_printed: Collection[int] = (),
         cycle: MeshCycle | None = None,
-        supports: Supports,
+        supports: AnySupports,
         equations: Structure | None = None,
     ) -> Self:
         """Return the system of a gear pair; arguments as of ``periodic_system``.
@@ -144,7 +146,7 @@ class LTVSystem:
         ``equations`` replaces the constant data of the equations of motion, on springs.
         """
         one_of("form", form, get_args(Form))
-        one_of("supports", supports, get_args(Supports))
+        one_of("supports", supports, get_args(AnySupports))
         s = structure(pair, as_printed) if equations is None else equations
         support = SUPPORTS[supports](pair, s)
         z = support.coordinates(form)
@@ -174,9 +176,9 @@ class LTVSystem:
     def at_speed(self, pair: GearPair, cycle: MeshCycle) -> LTVSystem:
         """Return the system of a pair that differs in speed alone, with its mesh cycle.
 
-        On springs only the mesh cycle changes; shafts have gyroscopic moments.
+        On springs and rigid bearings only the mesh cycle changes; shafts have gyroscopic moments.
         """
-        if self.supports.name == "springs":
+        if self.supports.name != "shafts":
             return replace(self, pair=pair, cycle=cycle)
         return LTVSystem.of(pair, self.form, cycle=cycle, supports="shafts")
 

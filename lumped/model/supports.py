@@ -1,6 +1,8 @@
-"""The supports of both gears: four springs, or elastic shafts. Each gives coordinates, forces and powers.
+"""The supports of both gears: four springs, elastic shafts, or rigid bearings.
 
-Sources: docs/theory/equations.md, eqs. 6 to 9; docs/theory/shafts.md.
+Each gives coordinates, forces and powers.
+
+Sources: docs/theory/equations.md, eqs. 6 to 9 and "One degree of freedom"; docs/theory/shafts.md.
 """
 
 from __future__ import annotations
@@ -206,5 +208,52 @@ class Shafts(Supports):
         return run.assign_coords(bearing=list(self.bearing_names), direction=["loa", "oloa"])
 
 
-#: Value of the argument ``supports`` -> its class.
-SUPPORTS: dict[str, type[Springs] | type[Shafts]] = {kind.name: kind for kind in (Springs, Shafts)}
+class Rigid(Supports):
+    """Rigid bearings: the gears turn and do not move sideways. One degree of freedom beside the rotation."""
+
+    name = "rigid"
+    bearing_names = ()
+
+    def __init__(self, pair: GearPair, s: Structure) -> None:
+        del pair
+        self.structure = s
+        self.bearings = np.zeros((0, 2, 2))
+        self.bearing_stiffness = self.bearing_dampers = np.zeros((0, 2))
+        radii = s.deflection[:2]
+        self.relative = radii[None]
+        self.back = np.array([[1.0 / radii[0]], [0.0]])
+        self.units = 1.0 / np.abs(radii)
+        self.common = self.units
+        self.common_weights = s.mass[:2] * self.common
+
+    def coordinates(self, form: Form) -> Coordinates:
+        """Return the equations: "full" has both rotations, the others q = r_bp theta_p - r_bg theta_g."""
+        s = self.structure
+        rotations = np.eye(2, 6)
+        reduction = rotations if form == "full" else self.relative @ rotations
+        m = len(reduction)
+        return Coordinates(
+            names=COORDINATES[:2] if form == "full" else ("q",),
+            gears=rotations.T if form == "full" else rotations.T @ self.back,
+            reduction=reduction,
+            stiffness=np.zeros((m, m)),
+            damping=np.zeros((m, m)),
+            gyroscopic=np.zeros((m, m)),
+            torques=np.stack([reduction[:, 0] / s.mass[0], -reduction[:, 1] / s.mass[1]]),
+            deflection=s.deflection[:2] if form == "full" else np.ones(1),
+        )
+
+    def forces_by_gear(self, states: FloatArray) -> dict[str, FloatArray]:
+        """No entry: forces of rigid bearings do not follow from displacements, which are zero."""
+        del states
+        return {}
+
+    def powers(self, rates: FloatArray) -> dict[str, FloatArray]:
+        """No loss."""
+        return {"bearings": np.zeros(len(rates))}
+
+
+#: Name of the supports -> their class.
+SUPPORTS: dict[str, type[Springs] | type[Shafts] | type[Rigid]] = {
+    kind.name: kind for kind in (Springs, Shafts, Rigid)
+}

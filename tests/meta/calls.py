@@ -182,7 +182,7 @@ REFUSED = {
     "validation.write_interactive_page": _page,
     "validation.exchange.write_state_space": _matrices,
 }
-#: Function -> call, in which supports do not enter: geometry, stiffness, friction, statics.
+#: Function -> call, in which supports do not enter: geometry, stiffness, friction, statics, rigid bearings.
 WITHOUT = {
     name: _of(name)
     for name in (
@@ -195,8 +195,9 @@ WITHOUT = {
         "lumped.path_of_contact.contact_path", "lumped.path_of_contact.friction_path_function",
         "lumped.path_of_contact.friction_profile", "lumped.path_of_contact.law_range_violations",
         "lumped.path_of_contact.pair_stiffness", "lumped.quasi_static.mesh_positions",
+        "floquet.single_degree",
     )
-}  # fmt: skip
+} | {"floquet.single_degree_chart": _of("floquet.single_degree_chart", {"speed_rpm": SPEEDS})}  # fmt: skip
 #: Functions that take a result, which names its supports.
 OF_RESULTS = {
     "floquet.jumps_removed_by",

@@ -14,29 +14,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from scipy.linalg import solve_banded
-from scipy.special import airy
 
+from floquet.one_degree.linear_segments import LinearSegments, Motion
 from lumped.errors import refuse
 from lumped.typing import FloatArray
 
 #: Harmonics of the motion of a cosine mesh. The amplitudes fall faster than geometrically: 64 reach rounding.
 _HARMONICS = 64
-#: Least panels of a segment, and Gauss-Legendre nodes of a panel, for the integral of the constant force.
-_PANELS = 64
-_NODES = 10
-#: A stiffness that changes by less than this share over a segment counts as constant.
-_CONSTANT = 1e-13
-
-
-class Motion(NamedTuple):
-    """Motion of one degree of freedom: ``dte`` (k,) [m] and its rate ``dte_dot`` (k,) [m/s]."""
-
-    dte: FloatArray
-    dte_dot: FloatArray
 
 
 class SingleDegree(Protocol):
@@ -93,19 +82,11 @@ class SingleDegree(Protocol):
         ...
 
 
-class _Flow(NamedTuple):
-    """Map from the start of a segment to times (k,): ``transition`` (k, 2, 2) and ``forced`` (k, 2)."""
-
-    transition: FloatArray
-    forced: FloatArray
-
-
 @dataclass(frozen=True, eq=False)
 class PiecewiseLinearMesh:
     """Mesh whose stiffness is linear in time on each segment and may jump between segments.
 
-    On a segment of constant stiffness the motion is a damped harmonic. Elsewhere delta = exp(-d t) y with
-    d = c/(2 m), and y obeys Airy's equation. The constant force enters by variation of constants.
+    The closed form is that of ``floquet.one_degree.linear_segments``, by Airy functions.
 
     Attributes
     ----------
@@ -133,100 +114,35 @@ class PiecewiseLinearMesh:
         """Mesh cycle T [s]."""
         return float(self.edges[-1])
 
-    def _segment(self, time: FloatArray) -> FloatArray:
-        last = self.stiffness_start.size - 1
-        return np.clip(np.searchsorted(self.edges, time, side="right") - 1, 0, last)
+    @cached_property
+    def segments(self) -> LinearSegments:
+        """The equation with its closed form."""
+        each = np.ones(self.stiffness_start.size)
+        return LinearSegments(
+            mass=self.mass,
+            edges=self.edges,
+            stiffness_start=self.stiffness_start,
+            stiffness_end=self.stiffness_end,
+            damping=self.damping * each,
+            force_start=self.force * each,
+            force_end=self.force * each,
+        )
 
     def stiffness(self, time: FloatArray) -> FloatArray:
         """Stiffness k(t) (k,) [N/m]."""
-        segment = self._segment(time)
-        share = (time - self.edges[segment]) / np.diff(self.edges)[segment]
-        start = self.stiffness_start[segment]
-        return np.asarray(start + share * (self.stiffness_end[segment] - start))
+        return self.segments.stiffness(time)
 
     def mesh_stiffness(self, time: FloatArray) -> FloatArray:
         """Stiffness of the tooth pairs (k,) [N/m]."""
-        return np.asarray(self.pair_stiffness[self._segment(time)])
+        return np.asarray(self.pair_stiffness[self.segments.segment_of(time)])
 
     def friction_coefficient(self, time: FloatArray) -> FloatArray:
         """SUM mu_i k_i over the mesh stiffness (k,)."""
-        return np.asarray(self.friction[self._segment(time)])
+        return np.asarray(self.friction[self.segments.segment_of(time)])
 
     def motion(self, time: FloatArray) -> Motion:
         """Periodic motion in closed form, at increasing times (k,) in [0, T) [s]."""
-        lengths = np.diff(self.edges)
-        segment = self._segment(time)
-        flows = []
-        transition = np.eye(2)
-        forced = np.zeros(2)
-        for number, length in enumerate(lengths):
-            inner = time[segment == number] - self.edges[number]
-            flow = self._flow(number, np.append(inner, length))
-            flows.append(flow)
-            transition = flow.transition[-1] @ transition
-            forced = flow.transition[-1] @ forced + flow.forced[-1]
-        state = np.linalg.solve(np.eye(2) - transition, forced)
-        parts = []
-        for flow in flows:
-            states = flow.transition @ state + flow.forced
-            parts.append(states[:-1])
-            state = states[-1]
-        states = np.concatenate(parts)
-        return Motion(states[:, 0], states[:, 1])
-
-    def _flow(self, number: int, time: FloatArray) -> _Flow:
-        """Map from the start of a segment to times (k,) after its start; the last time is its end."""
-        start = float(self.stiffness_start[number]) / self.mass
-        slope = (float(self.stiffness_end[number]) / self.mass - start) / float(time[-1])
-        decay = 0.5 * self.damping / self.mass
-        acceleration = self.force / self.mass
-        if abs(slope * time[-1]) <= _CONSTANT * start:
-            return _harmonic_flow(start, decay, acceleration, time)
-        return _airy_flow(start, slope, decay, acceleration, time)
-
-
-def _harmonic_flow(square: float, decay: float, acceleration: float, time: FloatArray) -> _Flow:
-    """Solve delta'' + 2 decay delta' + square delta = acceleration for a damping below the critical one."""
-    frequency = np.sqrt(square - decay**2)
-    fall = np.exp(-decay * time)
-    cosine = fall * np.cos(frequency * time)
-    sine = fall * np.sin(frequency * time) / frequency
-    rows = [[cosine + decay * sine, sine], [-square * sine, cosine - decay * sine]]
-    transition = np.moveaxis(np.array(rows), 2, 0)
-    rest = np.array([acceleration / square, 0.0])
-    return _Flow(transition, rest - transition @ rest)
-
-
-def _airy_flow(start: float, slope: float, decay: float, acceleration: float, time: FloatArray) -> _Flow:
-    """Solve delta'' + 2 decay delta' + (start + slope t) delta = acceleration from t = 0.
-
-    With c^3 = slope and s = -(start - decay^2 + slope t)/c^2 the functions exp(-decay t) Ai(s) and
-    exp(-decay t) Bi(s) solve the equation without force. Their Wronskian is -(c/pi) exp(-2 decay t).
-    """
-    scale = float(np.cbrt(slope))
-    panels = np.union1d(np.append(0.0, time), np.linspace(0.0, time[-1], _PANELS + 1))
-    nodes, weights = np.polynomial.legendre.leggauss(_NODES)
-    half = 0.5 * np.diff(panels)
-    inside = panels[:-1, None] + half[:, None] * (1.0 + nodes)
-
-    def basis(times: FloatArray) -> FloatArray:
-        """Values and rates (k, 2, 2) of both solutions; the solution is the last axis."""
-        place = -(start - decay**2 + slope * times) / scale**2
-        ai, ai_rate, bi, bi_rate = airy(place)
-        fall = np.exp(-decay * times)
-        values = fall * np.array([ai, bi])
-        rates = -scale * fall * np.array([ai_rate, bi_rate]) - decay * values
-        return np.moveaxis(np.array([values, rates]), 2, 0)
-
-    solutions = basis(inside.ravel())[:, 0].reshape(*inside.shape, 2)
-    wronskian = -(scale / np.pi) * np.exp(-2.0 * decay * inside)
-    integrands = acceleration * np.stack([-solutions[..., 1], solutions[..., 0]], axis=-1)
-    of_panels = half[:, None] * np.einsum("pnj,n->pj", integrands / wronskian[..., None], weights)
-    integrals = np.vstack([np.zeros(2), np.cumsum(of_panels, axis=0)])
-    at_time = basis(time)
-    transition = at_time @ np.linalg.inv(basis(np.zeros(1))[0])
-    forced = np.einsum("kij,kj->ki", at_time, integrals[np.searchsorted(panels, time)])
-    return _Flow(transition, forced)
+        return self.segments.motion(time)
 
 
 @dataclass(frozen=True, eq=False)

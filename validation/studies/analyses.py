@@ -121,6 +121,7 @@ def _geometry(variation: GearVariation, settings: Settings) -> Values:
 
 def _lumped(variation: GearVariation, settings: Settings) -> Values:
     samples = settings.samples_per_cycle
+    assert variation.supports != "rigid"  # a study has supports of the file
     run = steady_state(variation.pair, samples_per_cycle=samples, supports=variation.supports)
     return _motion(variation.pair, run) | {
         "mesh_efficiency": run.attrs["mesh_efficiency"],
@@ -134,6 +135,7 @@ def _multibody(variation: GearVariation, settings: Settings) -> Values:
     from multibody import simulate
 
     samples = settings.samples_per_cycle
+    assert variation.supports != "rigid"  # a study has supports of the file
     tolerance: dict[str, Any] = {} if settings.rtol is None else {"rtol": settings.rtol}
     run = simulate(
         variation.pair,
