@@ -24,6 +24,7 @@ from lumped.typing import FloatArray
 from validation.plots.maps import COLOURS
 from validation.plots.style import (
     BLACK,
+    BLUE,
     GREY,
     IN_X,
     RED,
@@ -161,6 +162,42 @@ def _line_figure(chart: xr.Dataset, x: str, value: float | None) -> Figure:
     mark_operating_value(ax, value)
     ax.set_title(_certificate(chart), loc="right", fontsize=7.5, color=GREY)
     ax.set(xlabel=axis_label(chart, x), ylabel="spectral radius [-], unstable above 1")
+    return figure
+
+
+def multipliers_figure(spectrum: xr.Dataset) -> Figure:
+    """Draw multipliers beside the unit circle, and growth rates over frequencies.
+
+    ``spectrum``: dataset of ``validation.any_system.spectrum_dataset``. Multipliers outside the unit circle
+    are red.
+    """
+    figure, axes = new_figure(1, 2, height=3.4)
+    left, right = axes[0]
+    values = spectrum["multipliers"].to_numpy()
+    outside = np.abs(values) > 1.0
+    turn = np.linspace(0.0, 2.0 * np.pi, 361)
+    left.fill(np.cos(turn), np.sin(turn), facecolor="#eef3f8", edgecolor=BLACK, linewidth=0.8, zorder=0.5)
+    growth = spectrum["growth_rate"].to_numpy()
+    frequency = spectrum["frequency"].to_numpy()
+    finite = np.isfinite(growth)  # a multiplier that is zero dies at once
+    for part, colour, marker, words in (
+        (~outside, BLUE, "o", "modulus up to 1"), (outside, RED, "s", "modulus above 1: grows"),
+    ):  # fmt: skip
+        if part.any():
+            left.plot(values[part].real, values[part].imag, marker, color=colour, markersize=4.5, label=words)
+            right.plot(frequency[part & finite], growth[part & finite], marker, color=colour, markersize=4.5)
+    legend_above(left, 2)
+    reach = 1.1 * max(1.0, float(np.abs(values).max()))
+    left.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal")
+    left.set(xlabel="real part [-]", ylabel="imaginary part [-]")
+    right.axhline(0.0, color=BLACK, linewidth=0.8)
+    right.set_xlim(-0.02 / spectrum.attrs["period"], 0.52 / spectrum.attrs["period"])
+    right.set(xlabel="frequency [Hz], up to multiples of 1/T", ylabel="growth rate [1/s], unstable above 0")
+    figure.supxlabel(
+        f"{spectrum.attrs['verdict_words']}; error bounds: {spectrum.attrs['certificate']}",
+        fontsize=8.0,
+        color=GREY,
+    )
     return figure
 
 

@@ -1,0 +1,94 @@
+"""Is a function of a Python file a family of systems, and is any other function refused?"""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from floquet import monodromy
+from lumped.errors import ParameterError
+from tests.evidence.floquet.reference_systems import meissner_trace
+from tests.validation.commands.conftest import run
+from validation.any_system import read_family
+
+SOURCE = """
+import floquet
+import family_tools
+
+
+def meissner(delta=1.3, depth=0.4, period=2):
+    steps = floquet.PiecewisePolynomial([0.0, period / 2, period], [[family_tools.plus(depth)], [-depth]])
+    return floquet.from_second_order(1.0, 0.0, floquet.PeriodicMatrix(delta, (steps, 1.0)), period)
+
+
+def without(delta):
+    return meissner(delta)
+
+
+def text(delta="1"):
+    return meissner()
+
+
+def nothing(delta=1.0):
+    return delta
+
+
+def failing(delta=1.0):
+    return 1.0 / (delta - delta)
+"""
+
+
+@pytest.fixture(autouse=True)
+def file(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "family.py").write_text(SOURCE)
+    (tmp_path / "family_tools.py").write_text("def plus(x):\n    return x\n")
+
+
+def test_a_function_is_a_family_of_its_arguments():
+    family = read_family("family.py:meissner")
+    assert dict(family.defaults) == {"delta": 1.3, "depth": 0.4, "period": 2.0}
+    assert set(family.axes) == set(family.defaults)
+    for values, expected in (
+        ({}, meissner_trace(1.3, 0.4, 2.0)),
+        ({"delta": 2.2, "period": 4.0}, meissner_trace(2.2, 0.4, 4.0)),
+    ):
+        matrix = monodromy(family.system(**values)).matrix
+        assert np.trace(matrix) == pytest.approx(expected, abs=1e-10)
+    assert read_family("rotor.npz") is None
+
+
+def test_the_command_draws_a_chart_of_the_arguments(tmp_path):
+    printed = run("floquet", "family.py:meissner")
+    assert (printed.exit_code, "stable (neutral)" in printed.stdout) == (0, True)
+    axes = ("--axis", "delta=0.5:5:10", "--axis", "depth=0:0.4:3")
+    printed = run("floquet", "family.py:meissner", *axes, "-o", "chart.nc", "-o", "chart.png")
+    assert "chart: 30 points" in printed.stdout
+    assert (tmp_path / "chart.png").stat().st_size > 5000
+    with xr.open_dataset(tmp_path / "chart.nc", engine="h5netcdf") as chart:
+        for point in chart.stack(point=("delta", "depth")).transpose("point", ...)["point"].to_numpy():
+            trace = meissner_trace(*point, 2.0)
+            verdict = int(chart["verdict"].sel(delta=point[0], depth=point[1]))
+            assert verdict == (-1 if abs(trace) > 2.0 else 2)
+
+
+@pytest.mark.parametrize(("arguments", "word"), [
+    (["family.py"], "Type family.py:meissner"),
+    (["family.py:meisner"], "Did you mean 'meissner'"),
+    (["family.py:without"], "family.py:without: delta = no default"),
+    (["family.py:text"], "a number as default"),
+    (["family.py:nothing"], "returns floquet.PeriodicSystem"),
+    (["family.py:failing"], "ZeroDivisionError"),
+    (["other.py:meissner"], "a Python file that exists"),
+    (["family.py:meissner", "--axis", "frequency=1:2:3"], "one of delta, depth, period"),
+    (["family.py:meissner", "--period", "3"], "leave it out"),
+    (["family.py:meissner", "--between", "cubic"], "leave it out"),
+])  # fmt: skip
+def test_another_function_is_refused(arguments, word):
+    result = run("floquet", *arguments)
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert word in " ".join(result.stderr.split())
+
+
+def test_a_refusal_of_the_system_is_that_of_the_function():
+    with pytest.raises(ParameterError, match="breaks"):
+        read_family("family.py:meissner").system(period=-1.0)
