@@ -136,7 +136,13 @@ def _show(source: str, multipliers: Monodromy, spectrum: xr.Dataset) -> None:
     names = ("modulus", "phase", "bound", "growth_rate", "frequency")
     columns = (spectrum[name].to_numpy().tolist() for name in names)
     rows = [
-        (f"{modulus:.12g}", f"{phase:.4f}", number(bound, 2), f"{growth:.6g}", f"{frequency:.6g}")
+        (
+            f"{modulus:.12g}",
+            f"{phase:.4f}",
+            number(bound, 2),
+            "0" if abs(modulus - 1.0) <= bound else f"{growth:.6g}",  # not distinguished from 0
+            f"{frequency:.6g}",
+        )
         for modulus, phase, bound, growth, frequency in zip(*columns, strict=True)
     ]
     heading = ">modulus | >phase [deg] | >bound | >growth [1/s] | >frequency [Hz]"
