@@ -1,6 +1,6 @@
 """A family of periodic systems: a function of its parameters in a file of Python.
 
-Sources: docs/tutorial/own_system.md.
+Sources: docs/theory/floquet.md; docs/tutorial/own_system.md.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ class FunctionFamily:
     ----------
     name : of the function, for a refusal
     function : parameters by name -> `floquet.PeriodicSystem`
-    defaults : parameters -> values where no value is named
+    defaults : parameters -> values where no value is named, in the units [SI] of the function
     """
 
     name: str

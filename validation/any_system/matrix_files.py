@@ -1,6 +1,6 @@
 """Periodic matrices from a file of NumPy, MATLAB, NetCDF or of columns of text.
 
-Sources: docs/how_to/any_system.md.
+Sources: docs/theory/floquet.md, "A matrix as a table"; docs/how_to/any_system.md.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Periodic systems as read from a file, with what a chart varies.
 
-Sources: docs/how_to/any_system.md.
+Sources: docs/theory/floquet.md, "A matrix as a table"; docs/how_to/any_system.md.
 """
 
 from __future__ import annotations
