@@ -25,7 +25,7 @@ class FunctionFamily:
 
     Attributes
     ----------
-    name : of the function, for a refusal
+    name : "path/to/file.py:function"
     function : parameters by name -> `floquet.PeriodicSystem`
     defaults : parameters -> values where no value is named, in the units [SI] of the function
     """
@@ -56,6 +56,10 @@ class FunctionFamily:
             raise refuse(self.name, why, "a function that runs", action) from error
         wanted = "a function that returns floquet.PeriodicSystem or floquet.from_second_order"
         return of_type(self.name, result, PeriodicSystem, wanted)
+
+    def __reduce__(self) -> tuple[Callable[[str], FunctionFamily | None], tuple[str]]:
+        """Another process reads the file of the function again."""
+        return read_family, (self.name,)
 
     def coarser(self) -> None:
         """See `PeriodicModel`: a function has no table."""

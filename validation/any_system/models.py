@@ -40,6 +40,17 @@ class PeriodicModel(Protocol):
         ...
 
 
+@dataclass(frozen=True, eq=False)
+class SystemAt:
+    """Parameters at a node of a chart -> the system of a model; other processes can receive it."""
+
+    model: PeriodicModel
+
+    def __call__(self, point: Mapping[str, float]) -> PeriodicSystem:
+        """Return the system at a node."""
+        return self.model.system(**point)
+
+
 class Harmonic(NamedTuple):
     """Harmonic term of a matrix: ``amplitude`` (n, n) times "cos" or "sin" of order ``order``."""
 

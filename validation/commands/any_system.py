@@ -31,6 +31,7 @@ def floquet(
     period: str | None = None,
     between: Literal["linear", "cubic", "steps"] | None = None,
     rtol: float = 1e-10,
+    workers: int = 1,
     as_json: opt.Json = False,
 ) -> None:
     """Decide whether x' = A(t) x, or M x'' + C(t) x' + K(t) x = 0, is stable: any system with one period.
@@ -57,6 +58,7 @@ def floquet(
     period SECONDS : Period in s, or '20 ms', where the file has none.
     between : What samples are between their times; default: linear.
     rtol : Wanted error of the monodromy matrix.
+    workers : Processes that compute a chart.
     """
     from floquet import monodromy
     from floquet.engine.multipliers import STABLE
@@ -76,7 +78,7 @@ def floquet(
         _show(source, multipliers, spectrum)
         _show_what_rows_leave_out(model, multipliers, rtol)
     if grid:
-        files.write(_chart(model, grid, rtol))
+        files.write(_chart(model, grid, rtol, workers))
     else:
         files.write(spectrum, lambda: multipliers_figure(spectrum))
     if multipliers.verdict not in STABLE:
@@ -176,13 +178,14 @@ def _show_what_rows_leave_out(model: PeriodicModel, multipliers: Monodromy, rtol
     )
 
 
-def _chart(model: PeriodicModel, grid: Mapping[str, FloatArray], rtol: float) -> xr.Dataset:
+def _chart(model: PeriodicModel, grid: Mapping[str, FloatArray], rtol: float, workers: int) -> xr.Dataset:
     """Compute a chart and print how many points have which verdict."""
     from floquet import scan
+    from validation.any_system.models import SystemAt
 
     labels = {name: (model.axes[name].units, model.axes[name].long_name) for name in grid}
     with progress_bar("chart") as tell:
-        chart = scan(lambda point: model.system(**point), grid, labels=labels, rtol=rtol, progress=tell)
+        chart = scan(SystemAt(model), grid, labels=labels, rtol=rtol, workers=workers, progress=tell)
     verdict = chart["verdict"].to_numpy()
     neutral, stable, undecided, unstable = (int((verdict == k).sum()) for k in (2, 1, 0, -1))
     stdout().print(

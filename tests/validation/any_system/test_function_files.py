@@ -71,6 +71,13 @@ def test_the_command_draws_a_chart_of_the_arguments(tmp_path):
             assert verdict == (-1 if abs(trace) > 2.0 else 2)
 
 
+def test_processes_read_the_file_of_the_function_again(tmp_path):
+    axes = ("--axis", "delta=0.5:5:7", "--axis", "depth=0:0.4:3")
+    for workers in (1, 2):
+        run("floquet", "family.py:meissner", *axes, "--workers", workers, "-o", f"chart{workers}.csv")
+    assert (tmp_path / "chart1.csv").read_bytes() == (tmp_path / "chart2.csv").read_bytes()
+
+
 @pytest.mark.parametrize(("arguments", "word"), [
     (["family.py"], "Type family.py:meissner"),
     (["family.py:meisner"], "Did you mean 'meissner'"),
