@@ -15,9 +15,9 @@ from validation.check.reading.table import Column, listed
 from validation.check.reading.text_table import Purpose, read_text_table
 from validation.check.reading.units import si_factor
 
-#: A_1_2, A12, A(1,2), A[1,2], and a unit in brackets behind.
+#: A_1_2, A12, A(1,2), A[1,2], a12, and a unit in brackets behind.
 _ENTRY = re.compile(
-    r"A\s*(?:_(\d{1,3})_(\d{1,3})|(\d)(\d)|[(\[]\s*(\d{1,3})\s*,\s*(\d{1,3})\s*[)\]])\s*(?:[\[(](.*)[\])])?"
+    r"[Aa]\s*(?:_(\d{1,3})_(\d{1,3})|(\d)(\d)|[(\[]\s*(\d{1,3})\s*,\s*(\d{1,3})\s*[)\]])\s*(?:[\[(](.*)[\])])?"
 )
 _TIMES = ("t", "time", "zeit", "temps")
 #: Units of entries of A in SI: nothing is converted, because positions and rates may have any units.

@@ -29,6 +29,13 @@ _FIRST_ORDER = ("A", "A_cos_1", "A_sin_1", "A_times", "A_values", "A_samples")
 _SECOND_ORDER = ("M", "C", "G", "K", "K_cos_1", "K_sin_1", "K_times", "K_values", "K_samples", "C_cos_1",
                  "C_sin_1", "C_times", "C_values", "C_samples")  # fmt: skip
 _NAMES = ("period", *_FIRST_ORDER, *_SECOND_ORDER)
+#: What a name that has no meaning here probably is.
+_INSTEAD = {
+    "t": "Name times A_times and the matrices A_samples (or K_times and K_samples).",
+    "time": "Name times A_times and the matrices A_samples (or K_times and K_samples).",
+    "T": "Name it period.",
+    "D": "Name the matrix of damping C.",
+}
 
 
 def read_matrices(
@@ -132,7 +139,7 @@ class _Reading:
         """Refuse unknown names, names of both kinds, and files with neither A nor M."""
         for name in self._fields:
             if not _known(name):
-                advice = nearest(name, _NAMES) or "Remove it, or correct its name."
+                advice = _INSTEAD.get(name) or nearest(name, _NAMES) or "Remove it, or correct its name."
                 raise refuse(name, "an unknown name", ", ".join(_NAMES) + ", K_cos_2, ...", advice)
         first = [name for name in self._fields if name.split("_")[0] == "A"]
         second = [name for name in self._fields if name.split("_")[0] in ("M", "C", "G", "K")]
@@ -244,13 +251,12 @@ class _Reading:
 
     def _check_shape(self, field: str, matrices: FloatArray, count: int, n: int | None, times: str) -> None:
         """Refuse another number or size of matrices."""
-        rows = n if n is not None else (matrices.shape[-1] if matrices.ndim == 3 else "n")
+        rows = n if n is not None else (matrices.shape[1] if matrices.ndim == 3 else "n")
         if matrices.shape != (count, rows, rows):
             wanted = f"({rows}, {rows}, {count})" if self._matlab else f"({count}, {rows}, {rows})"
             shape = np.shape(self._fields[field])
-            action = (
-                f"Give one matrix between times of {times}."
-                if field.endswith("values")
-                else f"Give one matrix at each of {times}."
-            )
+            place = "between times of" if field.endswith("values") else "at each of"
+            action = f"Give one matrix {place} {times}."
+            if matrices.shape == (rows, rows, count):
+                action = f"Put the times first: numpy.moveaxis({field}, -1, 0)."
             raise refuse(field, f"shape {shape}", wanted, action)

@@ -21,12 +21,12 @@ def spectrum_dataset(spectrum: Spectrum) -> xr.Dataset:
 
     Returns
     -------
-    xarray.Dataset over "multiplier": ``multipliers``, ``modulus``, ``phase`` [deg], ``bound``,
+    xarray.Dataset over "number": ``multipliers``, ``modulus``, ``phase`` [deg], ``bound``,
     ``growth_rate`` [1/s], ``frequency`` [Hz]
     """
     values = spectrum.multipliers
     exponents = spectrum.exponents
-    dims = ("multiplier",)
+    dims = ("number",)
     result = labelled_dataset(
         {
             "multipliers": (dims, values, "1", "Floquet multipliers"),
@@ -41,7 +41,7 @@ def spectrum_dataset(spectrum: Spectrum) -> xr.Dataset:
                 "frequency, imaginary part of the exponent, up to multiples of 1/T",
             ),
         },
-        {"multiplier": (np.arange(1, values.size + 1), "1", "number of the multiplier")},
+        {"number": (np.arange(1, values.size + 1), "1", "number of the multiplier")},
     )
     result.attrs.update(
         period=spectrum.period,

@@ -62,10 +62,12 @@ def floquet(
     """
     from floquet import monodromy
     from floquet.engine.multipliers import STABLE
+    from lumped.arguments import whole_number
     from lumped.errors import refuse
     from validation.any_system.spectrum import spectrum_dataset
     from validation.plots.stability import multipliers_figure
 
+    whole_number("--workers", workers, 1, 1024, "Use as many as there are cores.")
     model = _model(source, period, between)
     grid = opt.axes_values(axis, model.axes)
     if len(grid) > 2:

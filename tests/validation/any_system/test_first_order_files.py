@@ -86,7 +86,7 @@ def test_times_in_milliseconds_are_converted(tmp_path):
 
 
 @pytest.mark.parametrize(("heading", "options"), [
-    ("A_{}_{}", {}), ("A{}{}", {}), ("A({},{})", {}), ("A[{},{}]", {"sep": ";"}),
+    ("A_{}_{}", {}), ("A{}{}", {}), ("A({},{})", {}), ("A[{},{}]", {"sep": ";"}), ("a{}{}", {}),
     ("A_{}_{} [-]", {"sep": "\t"}), ("A_{}_{}", {"sep": ";", "decimal": ","}),
 ])  # fmt: skip
 def test_columns_of_any_program(tmp_path, heading, options):
@@ -141,7 +141,9 @@ FIELDS = {"A_times": TIMES, "A_samples": A(TIMES)}
     ({"A_samples": None}, "A_samples or A_values", "missing"),
     ({"A_values": A(TIMES[:-1])}, "A_samples or A_values", "both"),
     ({"A_samples": A(TIMES[:-1])}, "A_samples", "(33, 3, 3)"),
-    ({"A_samples": A(TIMES)[:, :2]}, "A_samples", "(33, 3, 3)"),
+    ({"A_samples": A(TIMES)[:, :2]}, "A_samples", "(33, 2, 2)"),
+    ({"A_samples": np.moveaxis(A(TIMES), 0, -1)}, "A_samples", "numpy.moveaxis(A_samples, -1, 0)"),
+    ({"t": TIMES}, "t", "Name times A_times"),
     ({"A": A(TIMES)}, "A", "A_samples with A_times"),
     ({"A": np.eye(2)}, "A", "(3, 3)"),
     ({"A_times": None, "A_samples": None}, "A", "M and K"),
@@ -205,5 +207,7 @@ def test_the_command_says_what_the_samples_leave_out_and_draws_the_multipliers(t
         np.testing.assert_allclose(written["growth_rate"], exact.exponents.real)
         np.testing.assert_allclose(written["frequency"], abs(exact.exponents.imag) / (2 * np.pi), atol=1e-12)
         assert written["frequency"].attrs["units"] == "Hz"
+    run("floquet", file, "--between", "cubic", "-o", tmp_path / "m.csv")
+    assert len(pd.read_csv(tmp_path / "m.csv")) == 3
     data = json.loads(run("floquet", file, "--between", "cubic", "--json").stdout)
     np.testing.assert_allclose(data["growth_rates"], exact.exponents.real)

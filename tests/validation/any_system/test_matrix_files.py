@@ -168,6 +168,7 @@ def test_the_command_accepts_neutral_systems_and_no_others_without_damping(tmp_p
     (["rotor.npz", "--period", "0.5"], "period = 0.5 s: allowed 0.4 s, that of the file"),
     (["rotor.npz", "--between", "cubic"], "a file with samples"),
     (["rotor.npz", "--period", "2 mm"], "a number in s"),
+    (["rotor.npz", "--workers", "0"], "1 to 1024"),
 ])  # fmt: skip
 def test_the_command_refuses_before_it_computes(tmp_path, monkeypatch, arguments, word):
     monkeypatch.chdir(tmp_path)
