@@ -242,6 +242,7 @@ def scan(
     one_of("store", store, ("all", "radius"))
     whole_number("workers", workers, 1, 1024, "Use as many as there are cores.")
     of_type("batched", batched, bool, "True or False")
+    of_type("refine", refine, bool, "True or False")
     rtol = checked_effort(rtol, 2)[0]
     shape = tuple(values.size for values in grid.values())
     plane = [name for name, values in grid.items() if values.size > 1][:2]

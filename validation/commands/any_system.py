@@ -31,6 +31,7 @@ def floquet(
     period: str | None = None,
     between: Literal["linear", "cubic", "steps"] | None = None,
     rtol: float = 1e-10,
+    refine: bool = False,
     workers: int = 1,
     as_json: opt.Json = False,
 ) -> None:
@@ -58,6 +59,7 @@ def floquet(
     period SECONDS : Period in s, or '20 ms', where the file has none.
     between : What samples are between their times; default: linear.
     rtol : Wanted error of the monodromy matrix.
+    refine : Compute a chart of two axes near its edges of instability alone, and interpolate the rest.
     workers : Processes that compute a chart.
     """
     from floquet import monodromy
@@ -70,6 +72,8 @@ def floquet(
     whole_number("--workers", workers, 1, 1024, "Use as many as there are cores.")
     model = _model(source, period, between)
     grid = opt.axes_values(axis, model.axes)
+    if refine and len(grid) != 2:
+        raise refuse("--refine", f"{len(grid)} axes", "with two --axis", "Leave it out, or give two axes.")
     if len(grid) > 2:
         raise refuse("--axis", ", ".join(grid), "one or two", "Leave an axis out.")
     multipliers = monodromy(model.system(), rtol)
@@ -80,7 +84,7 @@ def floquet(
         _show(source, multipliers, spectrum)
         _show_what_rows_leave_out(model, multipliers, rtol)
     if grid:
-        files.write(_chart(model, grid, rtol, workers))
+        files.write(_chart(model, grid, rtol, refine, workers))
     else:
         files.write(spectrum, lambda: multipliers_figure(spectrum))
     if multipliers.verdict not in STABLE:
@@ -180,20 +184,26 @@ def _show_what_rows_leave_out(model: PeriodicModel, multipliers: Monodromy, rtol
     )
 
 
-def _chart(model: PeriodicModel, grid: Mapping[str, FloatArray], rtol: float, workers: int) -> xr.Dataset:
+def _chart(
+    model: PeriodicModel, grid: Mapping[str, FloatArray], rtol: float, refine: bool, workers: int
+) -> xr.Dataset:
     """Compute a chart and print how many points have which verdict."""
     from floquet import scan
     from validation.any_system.models import SystemAt
 
     labels = {name: (model.axes[name].units, model.axes[name].long_name) for name in grid}
     with progress_bar("chart") as tell:
-        chart = scan(SystemAt(model), grid, labels=labels, rtol=rtol, workers=workers, progress=tell)
+        chart = scan(
+            SystemAt(model), grid, labels=labels, refine=refine, rtol=rtol, workers=workers, progress=tell
+        )
     verdict = chart["verdict"].to_numpy()
+    known = float(chart["known"].mean())
     neutral, stable, undecided, unstable = (int((verdict == k).sum()) for k in (2, 1, 0, -1))
     stdout().print(
         f"chart: {verdict.size} points, {stable} stable, "
         + (f"{neutral} stable (neutral), " if neutral else "")
         + f"{undecided} undecided, {unstable} unstable; "
-        f"largest bound on an error {float(chart['error'].max()):.1e}"
+        + ("" if known == 1.0 else f"{known:.0%} of the points are computed; ")
+        + f"largest bound on an error {float(chart['error'].where(chart['known']).max()):.1e}"
     )
     return chart

@@ -71,6 +71,17 @@ def test_the_command_draws_a_chart_of_the_arguments(tmp_path):
             assert verdict == (-1 if abs(trace) > 2.0 else 2)
 
 
+def test_a_refined_chart_has_the_verdicts_of_the_whole_one(tmp_path):
+    axes = ("--axis", "delta=0.5:20:65", "--axis", "depth=0.02:0.45:33")
+    for extra in ((), ("--refine",)):
+        printed = run("floquet", "family.py:meissner", *axes, *extra, "-o", f"chart{len(extra)}.nc")
+    assert "% of the points are computed" in printed.stdout
+    charts = [xr.open_dataset(tmp_path / f"chart{k}.nc", engine="h5netcdf") for k in (0, 1)]
+    unstable = [chart["verdict"].to_numpy() < 0 for chart in charts]
+    assert (unstable[0] == unstable[1]).all()
+    assert unstable[0].any()
+
+
 def test_processes_read_the_file_of_the_function_again(tmp_path):
     axes = ("--axis", "delta=0.5:5:7", "--axis", "depth=0:0.4:3")
     for workers in (1, 2):
@@ -87,6 +98,7 @@ def test_processes_read_the_file_of_the_function_again(tmp_path):
     (["family.py:failing"], "ZeroDivisionError"),
     (["other.py:meissner"], "a Python file that exists"),
     (["family.py:meissner", "--axis", "frequency=1:2:3"], "one of delta, depth, period"),
+    (["family.py:meissner", "--refine", "--axis", "delta=1:2:3"], "with two --axis"),
     (["family.py:meissner", "--period", "3"], "leave it out"),
     (["family.py:meissner", "--between", "cubic"], "leave it out"),
 ])  # fmt: skip
