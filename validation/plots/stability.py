@@ -10,6 +10,7 @@ from typing import Any
 import matplotlib as mpl
 import numpy as np
 import xarray as xr
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
 from matplotlib.colors import Normalize
@@ -31,6 +32,7 @@ from validation.plots.style import (
     WIDTH,
     legend,
     legend_above,
+    legend_outside,
     look,
     new_figure,
     one_panel,
@@ -168,25 +170,31 @@ def _line_figure(chart: xr.Dataset, x: str, value: float | None) -> Figure:
 def multipliers_figure(spectrum: xr.Dataset) -> Figure:
     """Draw multipliers beside the unit circle, and growth rates over frequencies.
 
-    ``spectrum``: dataset of ``validation.any_system.spectrum_dataset``. Multipliers outside the unit circle
-    are red.
+    ``spectrum``: dataset of ``validation.any_system.spectrum_dataset``. Multipliers that are outside the unit
+    circle by more than their bounds are red. Growth rates are 0 where the bounds contain 0.
     """
     figure, axes = new_figure(1, 2, height=3.4)
     left, right = axes[0]
     values = spectrum["multipliers"].to_numpy()
-    outside = np.abs(values) > 1.0
+    modulus = np.abs(values)
+    bound = spectrum["bound"].to_numpy()
+    outside = modulus > 1.0 + bound
     turn = np.linspace(0.0, 2.0 * np.pi, 361)
     left.fill(np.cos(turn), np.sin(turn), facecolor="#eef3f8", edgecolor=BLACK, linewidth=0.8, zorder=0.5)
-    growth = spectrum["growth_rate"].to_numpy()
+    growth = np.where(np.abs(modulus - 1.0) <= bound, 0.0, spectrum["growth_rate"].to_numpy())
     frequency = spectrum["frequency"].to_numpy()
     finite = np.isfinite(growth)  # a multiplier that is zero dies at once
+    handles: list[Artist] = []
     for part, colour, marker, words in (
         (~outside, BLUE, "o", "modulus up to 1"), (outside, RED, "s", "modulus above 1: grows"),
     ):  # fmt: skip
         if part.any():
-            left.plot(values[part].real, values[part].imag, marker, color=colour, markersize=4.5, label=words)
-            right.plot(frequency[part & finite], growth[part & finite], marker, color=colour, markersize=4.5)
-    legend_above(left, 2)
+            style: dict[str, Any] = {"color": colour, "markersize": 4.5, "label": words}
+            handles += left.plot(values[part].real, values[part].imag, marker, **style)
+            right.plot(frequency[part & finite], growth[part & finite], marker, **style)
+    legend_outside(figure, handles, 2)
+    if not growth[finite].any():
+        right.set_ylim(-0.1 / spectrum.attrs["period"], 0.1 / spectrum.attrs["period"])
     reach = 1.1 * max(1.0, float(np.abs(values).max()))
     left.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal")
     left.set(xlabel="real part [-]", ylabel="imaginary part [-]")

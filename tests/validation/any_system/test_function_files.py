@@ -8,7 +8,8 @@ from floquet import monodromy
 from lumped.errors import ParameterError
 from tests.evidence.floquet.reference_systems import meissner_trace
 from tests.validation.commands.conftest import run
-from validation.any_system import read_family
+from validation.any_system import read_family, spectrum_dataset
+from validation.plots.stability import multipliers_figure
 
 SOURCE = """
 import floquet
@@ -87,6 +88,20 @@ def test_processes_read_the_file_of_the_function_again(tmp_path):
     for workers in (1, 2):
         run("floquet", "family.py:meissner", *axes, "--workers", workers, "-o", f"chart{workers}.csv")
     assert (tmp_path / "chart1.csv").read_bytes() == (tmp_path / "chart2.csv").read_bytes()
+
+
+@pytest.mark.parametrize(("delta", "red"), [(1.3, 0), (2.45, 1)])
+def test_the_figure_marks_multipliers_outside_the_circle_and_no_rounding(delta, red):
+    """On the circle by proof, though rounding puts the modulus beside 1; and between two edges."""
+    spectrum = spectrum_dataset(monodromy(read_family("family.py:meissner").system(delta=delta)))
+    assert (spectrum.attrs["verdict"] == "unstable") == bool(red)
+    spectrum["modulus"][:] += 1e-15 * (not red)
+    spectrum["multipliers"][:] *= 1.0 + 1e-15 * (not red)
+    left, right = multipliers_figure(spectrum).axes
+    outside = [line for line in left.lines if "above 1" in str(line.get_label())]
+    assert sum(len(line.get_xdata()) for line in outside) == red
+    growth = np.concatenate([line.get_ydata() for line in right.lines if len(line.get_xdata()) < 3])
+    assert (max(abs(growth)) > 0.0) == bool(red)
 
 
 @pytest.mark.parametrize(("arguments", "word"), [
