@@ -28,17 +28,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import lumped
-from floquet import (
-    FourierSeries,
-    PeriodicMatrix,
-    PeriodicSystems,
-    SecondOrderSystem,
-    fast_multipliers,
-    from_second_order,
-    gear_block,
-    scan,
-    stability_chart,
-)
+from floquet import fast_multipliers, gear_block, stability_chart
 from lumped.errors import LawRangeWarning
 from lumped.model.periodic_system import Supports
 from lumped.schema.pair import GearPair
@@ -237,85 +227,6 @@ def on_shafts(size: int, points: int) -> None:
     )
 
 
-#: Mean stiffness and shape of its variation of one oscillator, and of three.
-OSCILLATORS = (
-    (np.array([[3.0]]), np.array([[1.0]])),
-    (np.diag([1.0, 2.9, 9.6]), np.array([[1.0, 0.5, -0.3], [0.5, -0.8, 0.6], [-0.3, 0.6, 0.4]])),
-)
-
-
-def oscillators(mean: np.ndarray, shape: np.ndarray) -> Callable[[dict[str, float]], SecondOrderSystem]:
-    """The family x'' + (mean + depth shape cos(frequency t)) x = 0."""
-    none = np.zeros_like(mean)
-
-    def at(point: dict[str, float]) -> SecondOrderSystem:
-        period = 2.0 * math.pi / point["frequency"]
-        wave = FourierSeries(period, 0.0, [point["depth"]])
-        return from_second_order(np.eye(len(mean)), none, PeriodicMatrix(mean, (wave, shape)), period)
-
-    return at
-
-
-def monodromy_by_solver(mean: np.ndarray, shape: np.ndarray, point: dict[str, float]) -> np.ndarray:
-    """Monodromy matrix of `oscillators` by DOP853 on the matrix."""
-    m = len(mean)
-
-    def rates(t: float, y: np.ndarray) -> np.ndarray:
-        X = y.reshape(2 * m, 2 * m)
-        K = mean + point["depth"] * math.cos(point["frequency"] * t) * shape
-        return np.concatenate([X[m:], -K @ X[:m]]).ravel()
-
-    period = 2.0 * math.pi / point["frequency"]
-    end = solve_ivp(rates, (0.0, period), np.eye(2 * m).ravel(), method="DOP853", rtol=1e-9, atol=1e-11)
-    return np.asarray(end.y[:, -1].reshape(2 * m, 2 * m))
-
-
-def in_one_call(mean: np.ndarray, shape: np.ndarray) -> Callable[[dict[str, np.ndarray]], PeriodicSystems]:
-    """The family `oscillators` as arrays of its parameters."""
-    m = len(mean)
-
-    def at(points: dict[str, np.ndarray]) -> PeriodicSystems:
-        def A(phases: np.ndarray) -> np.ndarray:
-            out = np.zeros((points["depth"].size, phases.size, 2 * m, 2 * m))
-            out[..., :m, m:] = np.eye(m)
-            depth = points["depth"][:, None] * np.cos(2.0 * np.pi * phases)
-            out[..., m:, :m] = -mean - depth[..., None, None] * shape
-            return out
-
-        return PeriodicSystems(A, 2.0 * np.pi / points["frequency"])
-
-    return at
-
-
-def scans(count: int) -> None:
-    """Charts of any system by `floquet.scan`, and DOP853 on some of the nodes."""
-    for mean, shape in OSCILLATORS:
-        scans_of(count, mean, shape)
-
-
-def scans_of(count: int, mean: np.ndarray, shape: np.ndarray) -> None:
-    """Charts of one family: with proven bounds; in one call with estimated errors; DOP853."""
-    axes = {"frequency": np.linspace(0.8, 5.0, count), "depth": np.linspace(0.05, 0.6, count // 2)}
-    few = {name: values[:2] for name, values in axes.items()}
-    points = [{"frequency": f, "depth": d} for f in axes["frequency"][::8] for d in axes["depth"][::8]]
-    _, seconds = cpu(lambda: [monodromy_by_solver(mean, shape, point) for point in points])
-    by_solver = seconds / len(points)
-    single, together = oscillators(mean, shape), in_one_call(mean, shape)
-    for title, call in (
-        ("proven bounds", lambda axes: scan(single, axes)),
-        ("estimates, in one call", lambda axes: scan(together, axes, batched=True)),
-    ):
-        call(few)
-        chart, seconds = cpu(lambda call=call: call(axes))
-        nodes = chart["verdict"].size
-        row(
-            f"scan, {2 * len(mean)} states, {nodes} nodes, {title}",
-            f"{seconds / nodes * 1e3:.3f} ms/node",
-            f"{seconds / nodes / by_solver:.3f} of DOP853, {by_solver * 1e3:.1f} ms/node; largest error "
-            f"{float(chart['error'].max()):.0e}, {int((chart['verdict'] == 0).sum())} nodes undecided",
-        )
-
-
 def child(size: int, store: str, **environment: str) -> list[float]:
     """Import time, wall time and peak memory of a chart in a fresh process."""
     run = subprocess.run(
@@ -385,7 +296,6 @@ def main() -> None:
     by_turning(4000)
     on_shafts(arguments.size // 8, 3)
     baselines(per_point, 6)
-    scans(arguments.size // 8)
     processes()
     accuracy(arguments.pairs, arguments.seed)
 

@@ -3,6 +3,7 @@ from .engine.coefficients import FourierSeries as FourierSeries
 from .engine.coefficients import PeriodicMatrix as PeriodicMatrix
 from .engine.coefficients import PiecewisePolynomial as PiecewisePolynomial
 from .engine.many_multipliers import FastMultipliers as FastMultipliers
+from .engine.matrix_table import sampled_matrix as sampled_matrix
 from .engine.monodromy import Monodromy as Monodromy
 from .engine.monodromy import monodromy as monodromy
 from .engine.multipliers import Spectrum as Spectrum

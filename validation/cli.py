@@ -14,6 +14,7 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperGroup
 
+from validation.commands.any_system import floquet
 from validation.commands.check import check
 from validation.commands.compare import compare
 from validation.commands.files import export, init, presets
@@ -21,7 +22,7 @@ from validation.commands.motion import interactive, simulate, teeth, uncertainty
 from validation.commands.reference import reference
 from validation.commands.report import crosscheck, report
 from validation.commands.response import response
-from validation.commands.stability import floquet, stability
+from validation.commands.stability import stability
 from validation.commands.sweep import sweep
 from validation.commands.terminal import NUMERICAL, Once, unprinted
 from validation.stop_signals import interrupt_once

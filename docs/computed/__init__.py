@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 DOCS = Path(__file__).resolve().parents[1]
 GENERATED = DOCS / "_generated"
 _PACKAGES = ("lumped", "multibody", "floquet", "validation", "reproductions")
-_SOURCES = (*_PACKAGES, "docs/computed", "docs/verification", "tests/evidence")
+_SOURCES = (*_PACKAGES, "docs/computed", "docs/tutorial", "docs/verification", "tests/evidence")
 
 
 def writers() -> Mapping[str, Callable[[], str]]:
@@ -32,6 +32,7 @@ def writers() -> Mapping[str, Callable[[], str]]:
         figures,
         interface,
         mutants,
+        own_system,
         paper,
         rankings,
         reference_cases,
@@ -46,6 +47,7 @@ def writers() -> Mapping[str, Callable[[], str]]:
             verification,
             faults,
             mutants,
+            own_system,
             agreement,
             errata,
             paper,
@@ -67,7 +69,10 @@ def state() -> str:
     digest = hashlib.sha256(importlib.metadata.version("spurcheck").encode())
     for folder in _SOURCES:
         for path in sorted((DOCS.parent / folder).rglob("*")):
-            if path.suffix in {".py", ".toml", ".json", ".csv", ".js", ".html", ".css"}:
+            if (
+                path.suffix in {".py", ".toml", ".json", ".csv", ".js", ".html", ".css"}
+                or path.name == "own_system.md"
+            ):
                 digest.update(path.name.encode() + path.read_bytes())
     return digest.hexdigest()
 

@@ -49,7 +49,12 @@ def transcript(*command: str, exit_code: int = 0, before: tuple[str, ...] = ()) 
             os.chdir(home)
     if result.exit_code != exit_code:
         raise RuntimeError(f"spurcheck {' '.join(command)}: exit code {result.exit_code}\n{result.output}")
-    lines = (wrapped(line.rstrip()) for line in _ESCAPES.sub("", result.output).strip("\n").splitlines())
+    return transcript_text(result.output)
+
+
+def transcript_text(output: str) -> str:
+    """Block of text of what a command printed."""
+    lines = (wrapped(line.rstrip()) for line in _ESCAPES.sub("", output).strip("\n").splitlines())
     return "```text\n" + "\n".join(lines) + "\n```\n"
 
 

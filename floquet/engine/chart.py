@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -13,19 +13,10 @@ import numpy.typing as npt
 from floquet.engine.monodromy import checked_effort
 from floquet.engine.multipliers import VERDICTS, radii_with_bounds, verdicts
 from floquet.engine.node_boxes import FlatChart, Plane
-from floquet.engine.nodes import (
-    TOGETHER,
-    TOGETHER_IN_ONE_CALL,
-    BatchedFamily,
-    Family,
-    NodeSpectra,
-    Point,
-    node_spectra,
-    refuse_other_sizes,
-    sampled_spectra,
-)
+from floquet.engine.node_workers import GridNodes, results_of
+from floquet.engine.nodes import BatchedFamily, Family, refuse_other_sizes
 from floquet.engine.refinement import NodeValues, gaps, search_leaves
-from lumped.arguments import of_type, real_numbers, some_of
+from lumped.arguments import of_type, one_of, real_numbers, some_of, whole_number
 from lumped.errors import refuse, shown
 from lumped.labelling import Variable, labelled_dataset
 from lumped.typing import BoolArray, ComplexArray, FloatArray, IntArray, Progress
@@ -212,7 +203,9 @@ def scan(
     batched: bool = False,
     labels: Mapping[str, tuple[str, str]] | None = None,
     refine: bool = False,
+    store: Literal["all", "radius"] = "all",
     rtol: float = 1e-8,
+    workers: int = 1,
     progress: Progress | None = None,
 ) -> xr.Dataset:
     """Evaluate the multipliers of a family of periodic systems on the product grid of the axes.
@@ -223,11 +216,14 @@ def scan(
         must give the same number of multipliers
     axes : name -> values
     batched : True: ``evaluate`` gets arrays (N,) of each parameter and returns `PeriodicSystems`. This takes
-        0.02 to 0.1 ms a node; errors are estimates
+        0.013 to 0.08 ms a node of 2 to 6 states; errors are estimates
     labels : name -> unit, "1" for none, and plain name of an axis
     refine : whether the chart is evaluated near its edges of instability alone and interpolated elsewhere,
         over its first two axes of more than one value; it then has no multipliers
+    store : "all"; "radius" leaves the multipliers out, which take 24 bytes a state and node
     rtol : of the monodromy matrix of a `PeriodicSystem`
+    workers : processes that evaluate nodes; the chart is the same to the last bit. With more than one, other
+        processes must be able to import ``evaluate``: a function at the head of a module
     progress : told the finished fraction
 
     Returns
@@ -236,53 +232,52 @@ def scan(
 
     Raises
     ------
-    ParameterError : unusable axes
+    ParameterError : unusable axes, or a function that no other process can import with several workers
     NumericalError
         A point fails; the message names it.
     """
     grid = checked_axes(axes)
-    names = list(grid)
     labels = dict(labels or {})
-    some_of("labels", labels, names)
+    some_of("labels", labels, grid)
+    one_of("store", store, ("all", "radius"))
+    whole_number("workers", workers, 1, 1024, "Use as many as there are cores.")
     of_type("batched", batched, bool, "True or False")
+    of_type("refine", refine, bool, "True or False")
     rtol = checked_effort(rtol, 2)[0]
     shape = tuple(values.size for values in grid.values())
     plane = [name for name, values in grid.items() if values.size > 1][:2]
     if refine and len(plane) < 2:
         raise refuse("refine", refine, "two axes of more than one value", "Leave it out.")
-    points = ChartPoints(math.prod(shape), everything=not refine)
-    size: list[int] = []
+    points = ChartPoints(math.prod(shape), everything=store == "all" and not refine)
+    nodes = GridNodes(evaluate, grid, batched, rtol)
+    first_size = 0
+    with results_of(nodes, workers) as results:
 
-    def spectra_of(some_points: Sequence[Point]) -> Iterable[NodeSpectra]:
-        if batched:
-            return [sampled_spectra(cast("BatchedFamily", evaluate), some_points, rtol)]
-        return node_spectra(cast("Family", evaluate), some_points, rtol)
+        def at(places: IntArray) -> None:
+            nonlocal first_size
+            groups = nodes.groups(places)
+            done = 0
+            for group, spectra in zip(groups, results(groups), strict=True):
+                for result in spectra:
+                    size = result.multipliers.shape[1]
+                    first_size = first_size or size
+                    if size != first_size:
+                        refuse_other_sizes(first_size, size, nodes.points(group[result.points[:1]])[0])
+                    points.put(
+                        group[result.points],
+                        result.multipliers,
+                        result.errors,
+                        result.proven,
+                        neutral=result.neutral,
+                    )
+                done += group.size
+                if progress is not None and not refine:
+                    progress(done / points.radius.size)
 
-    def at(places: IntArray) -> None:
-        together = TOGETHER_IN_ONE_CALL if batched else TOGETHER
-        for first in range(0, places.size, together):
-            some_places = places[first : first + together]
-            nodes = np.transpose(np.unravel_index(some_places, shape)).tolist()
-            some_points = [
-                {name: float(grid[name][i]) for name, i in zip(names, node, strict=True)} for node in nodes
-            ]
-            for result in spectra_of(some_points):
-                size.append(result.multipliers.shape[1])
-                refuse_other_sizes(size[0], size[-1], some_points[result.points[0]])
-                points.put(
-                    some_places[result.points],
-                    result.multipliers,
-                    result.errors,
-                    result.proven,
-                    neutral=result.neutral,
-                )
-            if progress is not None and not refine:
-                progress((first + some_places.size) / points.radius.size)
-
-    if refine:
-        refine_planes(grid, (plane[0], plane[1]), points, at, progress=progress)
-    else:
-        at(np.arange(points.radius.size))
+        if refine:
+            refine_planes(grid, (plane[0], plane[1]), points, at, progress=progress)
+        else:
+            at(np.arange(points.radius.size))
     chart = chart_dataset(grid, points)
     for name, (unit, text) in labels.items():
         chart[name].attrs.update(units=unit, long_name=text)

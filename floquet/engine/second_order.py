@@ -18,7 +18,7 @@ from scipy.linalg import LinAlgError, cholesky, eigh
 from floquet.engine.coefficients import PeriodicMatrix, square
 from floquet.engine.neutral import conservative
 from floquet.engine.system import PeriodicSystem, second_order
-from lumped.arguments import real_number
+from lumped.arguments import real_array, real_number
 from lumped.errors import NumericalError, refuse
 from lumped.typing import FloatArray
 
@@ -52,7 +52,12 @@ class SecondOrderSystem(PeriodicSystem):
 
 
 def from_second_order(
-    M: npt.ArrayLike, C: Matrix, K: Matrix, period: float, breakpoints: Sequence[float] = ()
+    M: npt.ArrayLike,
+    C: Matrix,
+    K: Matrix,
+    period: float,
+    breakpoints: Sequence[float] = (),
+    vectorized: bool = False,
 ) -> SecondOrderSystem:
     """Return M x'' + C(t) x' + K(t) x = 0 as a `PeriodicSystem`.
 
@@ -66,6 +71,7 @@ def from_second_order(
     C, K : constant (n, n), a `PeriodicMatrix`, or a callable t [s] -> (n, n)
     period : T > 0 [s]
     breakpoints : times in [0, T] at which a callable jumps or has a kink; a `PeriodicMatrix` knows its own
+    vectorized : True: callables take an array of times (k,) and return (k, n, n)
 
     Raises
     ------
@@ -89,7 +95,7 @@ def from_second_order(
     if np.size(breakpoints):
         places = PeriodicSystem(lambda t: np.zeros((1, 1)), period, breakpoints).edges
     middle = 0.5 * (places[:-1] + places[1:])
-    C_of, K_of = (_function(name, B, n) for name, B in (("C", damping), ("K", stiffness)))
+    C_of, K_of = (_function(name, B, n, vectorized) for name, B in (("C", damping), ("K", stiffness)))
     C_of(middle)
     mean = np.tensordot(np.diff(places) / period, K_of(middle), axes=1)
     T = _coordinates(mass, mean)
@@ -121,17 +127,25 @@ def _checked(
 
 
 def _function(
-    name: str, value: PeriodicMatrix | Callable[[float], npt.ArrayLike], n: int
+    name: str, value: PeriodicMatrix | Callable[..., npt.ArrayLike], n: int, vectorized: bool
 ) -> Callable[[FloatArray], FloatArray]:
     """C or K as a function of times (k,) -> (k, n, n), checked."""
     if isinstance(value, PeriodicMatrix):
         return value
 
+    def together(times: FloatArray) -> FloatArray:
+        values = real_array(f"{name}(t)", value(times))
+        if values.shape != (times.size, n, n):
+            action = "Put the times first; without vectorized a callable takes one time."
+            allowed = f"({times.size}, {n}, {n}) for {times.size} times"
+            raise refuse(f"{name}(t)", f"shape {values.shape}", allowed, action)
+        return values
+
     def at(times: FloatArray) -> FloatArray:
         values = [square(f"{name}(t)", np.asarray(value(float(t))), n) for t in times]
         return np.stack(values)
 
-    return at
+    return together if vectorized else at
 
 
 def _coordinates(M: FloatArray, K: FloatArray) -> FloatArray:

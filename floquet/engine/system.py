@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.linalg import matrix_balance
 
+from floquet.engine.callable_form import as_matrices, dimension_of
 from floquet.engine.coefficients import PeriodicMatrix
 from lumped.arguments import real_number, real_numbers
 from lumped.errors import NumericalError, refuse
@@ -44,7 +45,8 @@ class PeriodicSystem:
         breaks need not be named. The period is then a whole number of periods of each of its functions.
     period : T > 0 [s]
     breakpoints : times in [0, T] at which A jumps or has a kink; 0 and T are always segment ends
-    vectorized : whether A takes a vector of times
+    vectorized : True: A takes an array of times (k,) and returns (k, n, n), each matrix of its time alone;
+        False: A takes one time. A callable that takes the other form is refused
 
     Attributes
     ----------
@@ -54,8 +56,9 @@ class PeriodicSystem:
     Raises
     ------
     ParameterError
-        A period that is not positive, breakpoints outside [0, T], an A that is not square, a function of a
-        `PeriodicMatrix` that does not repeat after the period.
+        A period that is not positive, breakpoints outside [0, T], an A that is not square or takes its times
+        in another form than ``vectorized`` says, a function of a `PeriodicMatrix` that does not repeat after
+        the period.
     NumericalError
         A is not finite somewhere inside a segment.
     """
@@ -95,12 +98,12 @@ class PeriodicSystem:
         object.__setattr__(self, "edges", np.array([*separate, self.period]))
         object.__setattr__(self, "breakpoints", tuple(float(t) for t in breaks))
 
-        probe = np.asarray(self._call(np.array([0.5 * (self.edges[0] + self.edges[1])])))
-        if probe.ndim != 3 or probe.shape[1] != probe.shape[2] or probe.shape[1] == 0:
-            shape = probe.shape if self.vectorized else probe.shape[1:]
-            want = "(k, n, n) for k times (vectorized=True)" if self.vectorized else "(n, n)"
-            raise refuse("A", f"shape {shape}", want, "Check the shape that the callable returns.")
-        object.__setattr__(self, "dimension", int(probe.shape[1]))
+        low, high = self.edges[:2]
+        if isinstance(self.A, PeriodicMatrix):
+            dimension = self.A.dimension
+        else:
+            dimension = dimension_of(self.A, self.vectorized, low, high)
+        object.__setattr__(self, "dimension", dimension)
 
     @property
     def symplectic(self) -> bool:
@@ -111,16 +114,7 @@ class PeriodicSystem:
         return isinstance(self.A, PeriodicMatrix) and self.A.hamiltonian
 
     def _call(self, times: FloatArray) -> FloatArray:
-        values = self.A(times) if self.vectorized else [self.A(float(t)) for t in times]
-        try:
-            result = np.asarray(values)
-        except ValueError:
-            result = np.empty(0, dtype=object)
-        if result.dtype.kind not in "fiu":  # complex numbers and text would become numbers without a word
-            shapes = result.dtype.kind == "O"
-            kind = "numbers of different shapes" if shapes else f"values of type {result.dtype}"
-            raise refuse("A", kind, "real numbers", "Return real numbers of one shape for every time.")
-        return result.astype(float)
+        return as_matrices(self.A(times) if self.vectorized else [self.A(float(t)) for t in times])
 
     def evaluate(self, times: npt.ArrayLike) -> FloatArray:
         """Return A at times [s] strictly inside smooth segments, (k,) -> (k, n, n); checked finite."""

@@ -1,10 +1,7 @@
-"""spurcheck stability, floquet: multipliers and stability charts, of a gear pair and of any matrices."""
+"""spurcheck stability: multipliers and stability charts of a gear pair."""
 
 from __future__ import annotations
 
-from cmath import phase
-from math import degrees
-from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 import typer
@@ -24,8 +21,6 @@ if TYPE_CHECKING:
     from lumped import GearPair
     from lumped.typing import FloatArray
 
-#: Multipliers that are printed.
-_SHOWN = 12
 #: Speeds and damping ratios of a chart.
 _CHART = (801, 201)
 _BOTH = {"speed_rpm", "damping_ratio"}
@@ -250,87 +245,3 @@ def _boundaries(pair: GearPair, axes: Mapping[str, FloatArray], supports: opt.Su
     columns = "tongue | >values | >from, rpm | >to, rpm | >largest multiplier"
     show(f"tongues over {GEAR_AXES[name].long_name}", columns, rows)
     return boundaries
-
-
-@guarded
-def floquet(
-    source: Path,
-    files: opt.ResultFiles,
-    axis: list[str] | None = None,
-    rtol: float = 1e-10,
-    as_json: opt.Json = False,
-) -> None:
-    """Decide whether M x'' + C(t) x' + K(t) x = 0 is stable, for any matrices with one period.
-
-    Prints the Floquet multipliers with proven bounds on their errors; the largest tells by how much a
-    disturbance grows (above 1) or dies (below 1) per period. Without damping, multipliers that are proven to
-    stay on the unit circle are "stable (neutral)". The exit code is 1 when it is not stable.
-
-    [bold]Examples[/bold]
-    spurcheck floquet rotor.npz
-    spurcheck floquet rotor.mat --axis frequency=10:80:71 --axis variation=0:2:41 -o chart.png
-
-    Parameters
-    ----------
-    source FILE : Matrices: .npz or .mat with M, K, period in s; if wanted C, G (times 2 pi/period in C),
-        periodic terms K_cos_1, K_sin_1, ..., C_cos_1, ... and steps K_times with K_values.
-    axis NAME=FROM:TO:COUNT : Axis of a chart: frequency in Hz (1/period), variation (factor on the periodic
-        terms), damping (factor on C). Give it twice for a chart of two axes.
-    rtol : Wanted error of the monodromy matrix.
-    """
-    from floquet import monodromy, scan
-    from floquet.engine.multipliers import STABLE
-    from lumped.errors import refuse
-    from validation.exchange.matrices import FILE_AXES, read_second_order
-
-    if source.suffix.lower() == ".toml":
-        action = f"For the gear pair of a parameter file: spurcheck stability {source}."
-        raise refuse("matrices", source, "a file of matrices, .npz or .mat", action)
-    grid = opt.axes_values(axis, FILE_AXES)
-    if files.paths and not grid:
-        raise refuse("--output", files.paths[0], "a chart to write", "Give --axis, once or twice.")
-    if len(grid) > 2:
-        raise refuse("--axis", ", ".join(grid), "one or two", "Leave an axis out.")
-    model = read_second_order(source)
-    multipliers = monodromy(model.system(), rtol)
-    if as_json:
-        print_json(
-            {
-                "file": source.name,
-                "verdict": multipliers.verdict,
-                "spectral_radius": multipliers.spectral_radius,
-            }
-            | {
-                "error": multipliers.error,
-                "certificate": multipliers.certificate,
-                "period": multipliers.period,
-            }
-            | {"multipliers": [[z.real, z.imag] for z in multipliers.multipliers.tolist()]}
-            | {"multiplier_errors": multipliers.multiplier_errors.tolist()}
-        )
-    else:
-        pairs = zip(multipliers.multipliers.tolist(), multipliers.multiplier_errors.tolist(), strict=True)
-        rows = [(f"{abs(z):.12g}", f"{degrees(phase(z)):.4f}", number(error, 2)) for z, error in pairs]
-        show(f"{source.name}: multipliers", ">modulus | >phase [deg] | >bound on the error", rows[:_SHOWN])
-        if len(rows) > _SHOWN:
-            stdout().print(f"and {len(rows) - _SHOWN} smaller ones")
-        stdout().print(
-            f"{multipliers.verdict_words}: largest multiplier {multipliers.spectral_radius:.12g} "
-            f"+- {multipliers.error:.1e}, "
-            f"which is {'a proven bound' if multipliers.certificate == 'proven' else 'an estimate'}"
-        )
-    if grid:
-        labels = {name: (FILE_AXES[name].units, FILE_AXES[name].long_name) for name in grid}
-        with progress_bar("chart") as tell:
-            chart = scan(lambda point: model.system(**point), grid, labels=labels, rtol=rtol, progress=tell)
-        verdict = chart["verdict"].to_numpy()
-        neutral, stable, undecided, unstable = (int((verdict == k).sum()) for k in (2, 1, 0, -1))
-        stdout().print(
-            f"chart: {verdict.size} points, {stable} stable, "
-            + (f"{neutral} stable (neutral), " if neutral else "")
-            + f"{undecided} undecided, {unstable} unstable; "
-            f"largest bound on an error {float(chart['error'].max()):.1e}"
-        )
-        files.write(chart)
-    if multipliers.verdict not in STABLE:
-        raise typer.Exit(FAILED)

@@ -1,6 +1,3 @@
-from .matrices import FILE_AXES as FILE_AXES
-from .matrices import SecondOrderModel as SecondOrderModel
-from .matrices import read_second_order as read_second_order
 from .new_pair_file import new_pair as new_pair
 from .new_pair_file import parameter_text as parameter_text
 from .results import read_netcdf as read_netcdf
@@ -10,13 +7,10 @@ from .rexs.exporting import write_rexs as write_rexs
 from .rexs.importing import gear_pair_from_rexs as gear_pair_from_rexs
 
 __all__ = [
-    "FILE_AXES",
-    "SecondOrderModel",
     "gear_pair_from_rexs",
     "new_pair",
     "parameter_text",
     "read_netcdf",
-    "read_second_order",
     "write_results",
     "write_rexs",
     "write_state_space",

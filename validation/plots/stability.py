@@ -10,6 +10,7 @@ from typing import Any
 import matplotlib as mpl
 import numpy as np
 import xarray as xr
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
 from matplotlib.colors import Normalize
@@ -24,12 +25,14 @@ from lumped.typing import FloatArray
 from validation.plots.maps import COLOURS
 from validation.plots.style import (
     BLACK,
+    BLUE,
     GREY,
     IN_X,
     RED,
     WIDTH,
     legend,
     legend_above,
+    legend_outside,
     look,
     new_figure,
     one_panel,
@@ -161,6 +164,48 @@ def _line_figure(chart: xr.Dataset, x: str, value: float | None) -> Figure:
     mark_operating_value(ax, value)
     ax.set_title(_certificate(chart), loc="right", fontsize=7.5, color=GREY)
     ax.set(xlabel=axis_label(chart, x), ylabel="spectral radius [-], unstable above 1")
+    return figure
+
+
+def multipliers_figure(spectrum: xr.Dataset) -> Figure:
+    """Draw multipliers beside the unit circle, and growth rates over frequencies.
+
+    ``spectrum``: dataset of ``validation.any_system.spectrum_dataset``. Multipliers that are outside the unit
+    circle by more than their bounds are red. Growth rates are 0 where the bounds contain 0.
+    """
+    figure, axes = new_figure(1, 2, height=3.4)
+    left, right = axes[0]
+    values = spectrum["multipliers"].to_numpy()
+    modulus = np.abs(values)
+    bound = spectrum["bound"].to_numpy()
+    outside = modulus > 1.0 + bound
+    turn = np.linspace(0.0, 2.0 * np.pi, 361)
+    left.fill(np.cos(turn), np.sin(turn), facecolor="#eef3f8", edgecolor=BLACK, linewidth=0.8, zorder=0.5)
+    growth = np.where(np.abs(modulus - 1.0) <= bound, 0.0, spectrum["growth_rate"].to_numpy())
+    frequency = spectrum["frequency"].to_numpy()
+    finite = np.isfinite(growth)  # a multiplier that is zero dies at once
+    handles: list[Artist] = []
+    for part, colour, marker, words in (
+        (~outside, BLUE, "o", "modulus up to 1"), (outside, RED, "s", "modulus above 1: grows"),
+    ):  # fmt: skip
+        if part.any():
+            style: dict[str, Any] = {"color": colour, "markersize": 4.5, "label": words}
+            handles += left.plot(values[part].real, values[part].imag, marker, **style)
+            right.plot(frequency[part & finite], growth[part & finite], marker, **style)
+    legend_outside(figure, handles, 2)
+    if not growth[finite].any():
+        right.set_ylim(-0.1 / spectrum.attrs["period"], 0.1 / spectrum.attrs["period"])
+    reach = 1.1 * max(1.0, float(np.abs(values).max()))
+    left.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal")
+    left.set(xlabel="real part [-]", ylabel="imaginary part [-]")
+    right.axhline(0.0, color=BLACK, linewidth=0.8)
+    right.set_xlim(-0.02 / spectrum.attrs["period"], 0.52 / spectrum.attrs["period"])
+    right.set(xlabel="frequency [Hz], up to multiples of 1/T", ylabel="growth rate [1/s], unstable above 0")
+    figure.supxlabel(
+        f"{spectrum.attrs['verdict_words']}; error bounds: {spectrum.attrs['certificate']}",
+        fontsize=8.0,
+        color=GREY,
+    )
     return figure
 
 

@@ -201,6 +201,30 @@ def test_a_batch_refines_itself_as_single_systems_do() -> None:
     assert float(refined["known"].mean()) < 1.0
 
 
+def flapping_blade(point):
+    """beta'' + g (1 + 4/3 mu sin) beta' + (1 + g (4/3 mu cos + mu^2 sin 2)) beta = 0 (Peters 1971)."""
+    turn, mu, air = 2.0 * np.pi, point["mu"], point["lock"] / 8.0
+    along = FourierSeries(turn, 1.0, [], [4.0 / 3.0 * mu])
+    across = FourierSeries(turn, 0.0, [4.0 / 3.0 * mu], [0.0, mu**2])
+    return from_second_order(1.0, PeriodicMatrix(0.0, (along, air)), PeriodicMatrix(1.0, (across, air)), turn)
+
+
+@pytest.mark.parametrize(("evaluate", "axes"), [
+    (flapping_blade, {"mu": np.linspace(0.0, 2.0, 65), "lock": np.linspace(0.5, 15.0, 33)}),
+    (family("steps", 6, 0.05), {"period": np.linspace(0.9, 4.4, 65), "depth": np.linspace(0.05, 0.6, 33)}),
+    (family("waves", 4, 0.0), {"period": np.linspace(0.9, 4.4, 65), "depth": np.linspace(0.05, 0.6, 33)}),
+])  # fmt: skip
+def test_a_family_of_any_function_refines_itself(evaluate, axes) -> None:
+    """No verdict differs from that of the whole chart, and no radius by more than a leaf may be wrong."""
+    refined, whole_chart = (scan(evaluate, axes, refine=refine, rtol=1e-9) for refine in (True, False))
+    assert (np.sign(refined["verdict"]) == np.sign(whole_chart["verdict"])).all()
+    assert {-1} < set(whole_chart["verdict"].to_numpy().ravel().tolist())
+    assert float(refined["known"].mean()) < 0.95
+    error = np.abs(refined["spectral_radius"] - whole_chart["spectral_radius"])
+    # 4e-3 is checked at the nodes of a leaf that are evaluated; between them twice as much is possible.
+    assert float((error / np.maximum(whole_chart["spectral_radius"], 1.0)).max()) < 8e-3
+
+
 @pytest.mark.parametrize(("systems", "field", "word"), [
     (lambda p: PeriodicSystems(lambda phases: np.zeros((3, phases.size, 2, 2)), 1.0), "A", "(2, "),
     (lambda p: PeriodicSystems(lambda phases: np.zeros((2, phases.size, 2, 3)), 1.0), "A", "systems, phases"),

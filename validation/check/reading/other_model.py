@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-import importlib.util
 import inspect
-import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
-from lumped.arguments import nearest, whole_number
+from lumped.arguments import whole_number
 from lumped.errors import ParameterError, refuse, shown
 from lumped.schema.bodies import bodies_of
 from lumped.schema.pair import GearPair
 from validation.check.curves import Curves, ValuesOverSpeed
 from validation.check.reading.objects import read_object
+from validation.files.python_functions import named_function
 
 #: Finest division of a step.
 _MOST_REFINED = 1024
@@ -107,15 +104,8 @@ def other_model(theirs: Any) -> OtherModel | None:
     ParameterError : the module cannot be imported, or has no such function
     """
     if isinstance(theirs, (str, Path)):
-        path, separator, name = str(theirs).rpartition(":")
-        if separator and path.lower().endswith(".py"):
-            return _model(_of_module(Path(path), name), str(theirs))
-        if str(theirs).lower().endswith(".py"):
-            functions = _functions(_module(Path(theirs)))
-            action = f"Type {theirs}:{functions[0]}" if functions else "Write a function f(parameters)."
-            allowed = "the name of a function behind a colon"
-            raise refuse("theirs", str(theirs), allowed, f"{action}. Functions: {', '.join(functions)}.")
-        return None
+        function = named_function("theirs", theirs, "f(parameters)")
+        return None if function is None else _model(function, str(theirs))
     if callable(theirs) and not isinstance(theirs, type) and not hasattr(theirs, "data_vars"):
         return _model(theirs, getattr(theirs, "__name__", type(theirs).__name__))
     return None
@@ -141,60 +131,3 @@ def _model(function: Callable[..., Any], name: str) -> OtherModel:
             name, f"arguments {', '.join(required) or 'none'}", "one argument, the parameters", action
         )
     return OtherModel(name, function, "refine" in parameters)
-
-
-def _of_module(path: Path, name: str) -> Callable[..., Any]:
-    module = _module(path)
-    function = getattr(module, name, None)
-    if not callable(function):
-        functions = _functions(module)
-        action = nearest(name, functions) or "Name one of these."
-        allowed = f"one of {', '.join(functions)}" if functions else "a function of the module"
-        raise refuse("theirs", f"{path}:{name}", allowed, action)
-    return _in_folder(function, path.resolve().parent)
-
-
-def _in_folder(function: Callable[..., Any], folder: Path) -> Callable[..., Any]:
-    """Return the function so that it imports modules beside its own as it runs."""
-
-    def wrapped(*arguments: Any, **keywords: Any) -> Any:
-        with _importable(folder):
-            return function(*arguments, **keywords)
-
-    wrapped.__signature__ = inspect.signature(function)  # type: ignore[attr-defined]
-    return wrapped
-
-
-def _functions(module: ModuleType) -> list[str]:
-    return [
-        name
-        for name, value in vars(module).items()
-        if inspect.isfunction(value) and value.__module__ == module.__name__ and name[0] != "_"
-    ]
-
-
-@contextmanager
-def _importable(folder: Path) -> Iterator[None]:
-    """Let modules of a folder be imported."""
-    sys.path.insert(0, str(folder))
-    try:
-        yield
-    finally:
-        sys.path.remove(str(folder))
-
-
-def _module(path: Path) -> ModuleType:
-    """Import a module file."""
-    if not path.is_file():
-        raise refuse("theirs", path, "a Python file that exists", "Check the folder and the name.")
-    spec = importlib.util.spec_from_file_location(f"their_model_{path.stem}", path)
-    if spec is None or spec.loader is None:
-        raise refuse("theirs", path, "a Python file", "Name a file that ends in .py.")
-    module = importlib.util.module_from_spec(spec)
-    try:
-        with _importable(path.resolve().parent):
-            spec.loader.exec_module(module)
-    except Exception as error:
-        why = f"{type(error).__name__}: {error}"
-        raise refuse("theirs", path, "a Python file that can be imported", f"Correct it: {why}.") from error
-    return module

@@ -12,7 +12,7 @@ import csv
 import io
 import re
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
@@ -55,6 +55,16 @@ class Layout(NamedTuple):
 ANY_LAYOUT = Layout()
 
 
+class Purpose(NamedTuple):
+    """What the columns are for: whether a heading has a meaning, and two headings as an example."""
+
+    has_meaning: Callable[[str], object]
+    example: str
+
+
+CURVES = Purpose(understood, "time [s], dte [um]")
+
+
 class _Block(NamedTuple):
     """Lines of numbers: index of the first line and number of cells in a line."""
 
@@ -70,7 +80,9 @@ class _Headings(NamedTuple):
     first: int
 
 
-def read_text_table(path: Path, layout: Layout = ANY_LAYOUT, *, field: str = "theirs") -> Table:
+def read_text_table(
+    path: Path, layout: Layout = ANY_LAYOUT, *, field: str = "theirs", purpose: Purpose = CURVES
+) -> Table:
     """Read a file of text with columns.
 
     Raises
@@ -80,7 +92,7 @@ def read_text_table(path: Path, layout: Layout = ANY_LAYOUT, *, field: str = "th
     data = read_bytes(path, _MAX_BYTES, field=field, kind="CSV file")
     text, remarks = _decoded(data, path, field)
     try:
-        return table_of_text(text, path.stem, layout, remarks=remarks, field=field)
+        return table_of_text(text, path.stem, layout, remarks=remarks, field=field, purpose=purpose)
     except ParameterError as error:
         raise ParameterError(list(error.problems), str(path)) from None
 
@@ -102,7 +114,13 @@ def _decoded(data: bytes, path: Path, field: str) -> tuple[str, tuple[str, ...]]
 
 
 def table_of_text(
-    text: str, name: str, layout: Layout = ANY_LAYOUT, *, remarks: tuple[str, ...] = (), field: str = "theirs"
+    text: str,
+    name: str,
+    layout: Layout = ANY_LAYOUT,
+    *,
+    remarks: tuple[str, ...] = (),
+    field: str = "theirs",
+    purpose: Purpose = CURVES,
 ) -> Table:
     """Make a table of text."""
     lines = text.splitlines()
@@ -112,8 +130,8 @@ def table_of_text(
     layout = _layout(lines, layout, field)
     block = _block(lines, layout)
     if block is None:
-        raise _no_numbers(lines, layout, field)
-    headings = _headings(lines, layout, block, field)
+        raise _no_numbers(lines, field, purpose)
+    headings = _headings(lines, layout, block, field, purpose)
     body = "\n".join(line for line in lines[block.first :] if line.strip() and not _is_comment(line))
     cells = _cells(body, layout, len(headings.names), field)
     columns = _columns(cells, headings, layout, field)
@@ -222,17 +240,17 @@ def _block(lines: list[str], layout: Layout) -> _Block | None:
     return best if length else None
 
 
-def _no_numbers(lines: list[str], layout: Layout, field: str) -> ParameterError:
+def _no_numbers(lines: list[str], field: str, purpose: Purpose) -> ParameterError:
     first = next(line for line in lines if line.strip())
     return refuse(
         field,
         shown(first),
-        "a line of headings such as 'time [s], dte [um]', then lines of numbers",
-        "Export the curves as a table with one column for each channel.",
+        f"a line of headings such as '{purpose.example}', then lines of numbers",
+        "Export a table with one column for each quantity.",
     )
 
 
-def _headings(lines: list[str], layout: Layout, block: _Block, field: str) -> _Headings:
+def _headings(lines: list[str], layout: Layout, block: _Block, field: str, purpose: Purpose) -> _Headings:
     """Headings before the block of numbers."""
     delimiter = str(layout.delimiter)
     above = [
@@ -249,7 +267,7 @@ def _headings(lines: list[str], layout: Layout, block: _Block, field: str) -> _H
         if _is_comment(lines[index]):
             text = lines[index].lstrip(" \t#%!/")
             cells = _trimmed(_split(text, delimiter), block.cells) or _trimmed(_split(text, " "), block.cells)
-            if cells and any(understood(cell) for cell in cells):
+            if cells and any(purpose.has_meaning(cell) for cell in cells):
                 return _Headings(cells, None, index)
     others = [line for line in lines[: block.first] if line.strip() and not _is_comment(line)]
     if others:
@@ -260,7 +278,7 @@ def _headings(lines: list[str], layout: Layout, block: _Block, field: str) -> _H
         )  # fmt: skip
     raise refuse(
         field, "no headings", "a first line that names the columns",
-        "Write a line such as 'time [s], dte [um]' before the numbers.",
+        f"Write a line such as '{purpose.example}' before the numbers.",
     )  # fmt: skip
 
 

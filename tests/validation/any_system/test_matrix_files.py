@@ -14,7 +14,7 @@ from floquet import monodromy
 from lumped.errors import ParameterError
 from tests.evidence.floquet.reference_systems import meissner_trace
 from tests.validation.commands.conftest import run
-from validation.exchange import read_second_order
+from validation.any_system import read_matrices
 from validation.files import matlab
 
 T = 0.4
@@ -41,7 +41,7 @@ def test_both_formats_are_the_system_of_the_page(tmp_path):
         return C + 2.0 * np.pi / T * G + np.sin(4.0 * np.pi * t / T) * DRAG
 
     for name in ("rotor.npz", "rotor.mat"):
-        system = read_second_order(tmp_path / name).system()
+        system = read_matrices(tmp_path / name).system()
         for t in (0.05, 0.2, 0.35):
             Q = np.linalg.inv(M @ system.coordinates)
             expected = [-Q @ B(t) @ system.coordinates for B in (stiffness, damping)]
@@ -54,7 +54,7 @@ def test_what_a_chart_varies_is_varied(tmp_path):
     # Meissner's equation: the steps have the mean 1.3, their variation is half a step of 0.4.
     steps = np.array([1.7, 0.9]).reshape(2, 1, 1)
     np.savez(tmp_path / "m.npz", M=1.0, K=0.0, C=0.5, period=3.0, K_times=[0.0, 1.5, 3.0], K_values=steps)
-    model = read_second_order(tmp_path / "m.npz")
+    model = read_matrices(tmp_path / "m.npz")
     for frequency, period in (({}, 3.0), ({"frequency": 0.2}, 5.0)):
         for factor in (0.5, 1.5):
             flow = monodromy(model.system(**frequency, variation=factor, damping=0.0))
@@ -81,7 +81,7 @@ def _bomb(path):
 def test_a_small_file_does_not_fill_the_memory(tmp_path, suffix):
     _bomb(tmp_path / f"bomb{suffix}")
     with pytest.raises(ParameterError, match=r"claims to hold 8e\+08 bytes|allocate"):
-        read_second_order(tmp_path / f"bomb{suffix}")
+        read_matrices(tmp_path / f"bomb{suffix}")
 
 
 def test_a_file_that_ends_its_reader_is_refused(tmp_path, monkeypatch):
@@ -89,12 +89,12 @@ def test_a_file_that_ends_its_reader_is_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(matlab, "_READER", "import os, signal\nos.kill(os.getpid(), signal.SIGSEGV)")
     scipy.io.savemat(tmp_path / "rotor.mat", FIELDS)
     with pytest.raises(ParameterError, match="damaged"):
-        read_second_order(tmp_path / "rotor.mat")
+        read_matrices(tmp_path / "rotor.mat")
 
 
 @pytest.mark.parametrize(("change", "field", "word"), [
     ({"K_cos1": WAVE}, "K_cos1", "K_cos_1"),
-    ({"K": None}, "K", "missing"),
+    ({"K": None, "K_times": None, "K_values": None}, "K", "missing"),
     ({"C": np.eye(3)}, "C", "(2, 2)"),
     ({"K_times": None}, "K_times", "Save both"),
     ({"K_times": [0.0, 0.3, 0.1, T]}, "K_times", "increasing"),
@@ -107,7 +107,7 @@ def test_a_file_that_ends_its_reader_is_refused(tmp_path, monkeypatch):
 def test_a_wrong_field_is_refused_by_its_name(tmp_path, change, field, word):
     np.savez(tmp_path / "bad.npz", **{k: v for k, v in (FIELDS | change).items() if v is not None})
     with pytest.raises(ParameterError, match=r"bad\.npz") as refused:
-        read_second_order(tmp_path / "bad.npz")
+        read_matrices(tmp_path / "bad.npz")
     assert refused.value.problems[0].field == field
     assert word in str(refused.value)
 
@@ -116,7 +116,7 @@ def test_the_command_prints_bounds_and_writes_a_chart(tmp_path):
     np.savez(tmp_path / "rotor.npz", **FIELDS)
     printed = run("floquet", tmp_path / "rotor.npz", "--json")
     data = json.loads(printed.stdout)
-    exact = monodromy(read_second_order(tmp_path / "rotor.npz").system())
+    exact = monodromy(read_matrices(tmp_path / "rotor.npz").system())
     assert (data["verdict"], data["certificate"], printed.exit_code) == ("stable", "proven", 0)
     assert data["multipliers"] == [[z.real, z.imag] for z in exact.multipliers]
     axes = ("--axis", "frequency=4:6:3", "--axis", "damping=0:1:2")
@@ -160,15 +160,21 @@ def test_the_command_accepts_neutral_systems_and_no_others_without_damping(tmp_p
 @pytest.mark.parametrize(("arguments", "word"), [
     (["none.npz"], "a file that exists"),
     (["text.npz"], "a .npz of arrays"),
-    (["text.mat"], "a .npz of arrays"),
-    (["text.csv"], "a name ending in .npz, .mat"),
-    (["text.npz", "-o", "chart.png"], "Give --axis"),
-    (["text.npz", "--axis", "speed_rpm=1:2:3"], "one of frequency"),
+    (["text.mat"], "a .mat of arrays"),
+    (["text.nc"], "a .nc of arrays"),
+    (["text.csv"], "a line of headings"),
+    (["text.txt"], "a name ending in .npz, .mat, .nc, .csv"),
+    (["rotor.npz", "--axis", "speed_rpm=1:2:3"], "one of frequency"),
+    (["rotor.npz", "--period", "0.5"], "period = 0.5 s: allowed 0.4 s, that of the file"),
+    (["rotor.npz", "--between", "cubic"], "a file with samples"),
+    (["rotor.npz", "--period", "2 mm"], "a number in s"),
+    (["rotor.npz", "--workers", "0"], "1 to 1024"),
 ])  # fmt: skip
 def test_the_command_refuses_before_it_computes(tmp_path, monkeypatch, arguments, word):
     monkeypatch.chdir(tmp_path)
-    for name in ("text.npz", "text.mat", "text.csv"):
+    for name in ("text.npz", "text.mat", "text.csv", "text.nc", "text.txt"):
         (tmp_path / name).write_text("no matrices")
+    np.savez(tmp_path / "rotor.npz", **FIELDS)
     result = run("floquet", *arguments)
     assert (result.exit_code, result.stdout) == (2, "")
-    assert word in result.stderr
+    assert word in " ".join(result.stderr.split())
