@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -22,6 +23,10 @@ _RATIO = 1.01
 #: Largest deviation of law II from a sum of two functions, over the mean of |mu| times the path, before a
 #: reference speed of its own serves.
 _LARGEST_DEVIATION = 1e-4
+#: Ratio of neighbouring speeds at which the mean of law II is computed, and the largest deviation of this mean
+#: from lines in between, over the mean times the path; the fits of law II alone cause some 1e-8.
+_ANCHORS = 1.5
+_LARGEST_LINE_DEVIATION = 1e-7
 _EQUAL = 1e-12  # values of mu that are the same, relative
 #: Of the mean of law II at an end of an interval and at the reference speed, both computed from fits.
 _FIT_ERRORS = 4.0 * FIT_TOLERANCE
@@ -102,6 +107,16 @@ class FrictionBetweenSpeeds:
         return lambda speeds: np.array([[self._factor(law, float(rpm))] for rpm in speeds])
 
     def _by_the_mean(self, law: FrictionLaw, low: float, high: float) -> SpeedPatch:
+        """Laws I and IV: between the anchors around an interval, if mu deviates little there; else in it."""
+        first = math.floor(math.log(low / self.reference) / math.log(_ANCHORS))
+        end = max(math.ceil(math.log(high / self.reference) / math.log(_ANCHORS)), first + 1)
+        wide = self._line_of_the_mean(law, self.reference * _ANCHORS**first, self.reference * _ANCHORS**end)
+        if wide.deviation <= _LARGEST_LINE_DEVIATION * self.law.mean(self.reference) * self.length:
+            return wide
+        return self._line_of_the_mean(law, low, high)
+
+    @cache  # noqa: B019, an instance serves one search
+    def _line_of_the_mean(self, law: FrictionLaw, low: float, high: float) -> SpeedPatch:
         """Laws I and IV: mu is proportional to the mean of law II, nearly a line over log speed.
 
         The slope of this mean is the slope of law II times the share of the path on which law II is not
@@ -155,7 +170,8 @@ class FrictionBetweenSpeeds:
         rise = max(abs(self._rise(at_reference, reference, rpm)) for rpm in (low, high))
         upper = self.clipped(at_reference, min(low, reference)).upper
         zero = self.clipped(at_reference, max(high, reference)).zero
-        return SpeedPatch(reference, mean, factors, rise * (upper + zero))
+        deviation = rise * (upper + zero) + _FIT_ERRORS * self.length
+        return SpeedPatch(reference, mean, factors, deviation)
 
     def clipped(self, law_two: LawOverSpeed, rpm: float) -> ClippedLengths:
         """Where law II is at its bounds at a speed, between its switches and the pitch point."""

@@ -28,6 +28,7 @@ _T = TypeVar("_T")
 
 MOST = 20
 """Coordinates at most: the time and the memory of a step grow like their square and more."""
+_FEWEST = 24  # points of a thread: to start one takes as long as some points
 _DIES_OUT = 0.9  # spectral radius below which a motion is far from any boundary
 
 
@@ -164,5 +165,5 @@ def _factors(
 
 def _in_slices(run: Callable[[slice], _T], size: int) -> list[_T]:
     """Results of ``run`` on slices of range(size)."""
-    chunk = max(1, min(512, -(-size // cores())))
+    chunk = max(_FEWEST, min(512, -(-size // cores())))
     return in_threads(run, [slice(first, min(first + chunk, size)) for first in range(0, size, chunk)])

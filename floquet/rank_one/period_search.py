@@ -31,8 +31,9 @@ from lumped.typing import FloatArray, IntArray
 
 _NODES = NodeCounts(24, 1)
 _DAMPING = np.ones(2)  # the damping of the system
-#: Largest error of the polynomial of a patch, and of the matrices at its nodes per step.
+#: Largest error of the polynomial of a patch, by gains that deviate, and of the matrices at its nodes per step.
 _TOLERANCE = 1e-8
+_DEVIATION_TOLERANCE = 1e-5
 _STEP_TOLERANCE = 1e-13
 #: Widths of a patch over its first period, of which the largest is taken that the tolerance allows.
 _WIDTHS = np.geomspace(1e-5, 1.0, 81)
@@ -133,15 +134,22 @@ class _Side:
             return np.array([self.front, min(self.front * (1.0 + width), self.end)])
         return np.array([max(self.front / (1.0 + width), self.end), self.front])
 
-    def next_ends(self, problem: Problem, widest: float) -> FloatArray:
-        """Ends (2,) of the next patch, the widest of small error if flows grow as in the last patch."""
-        size = PatchSize(problem, self.growth)
+    def next_ends(self, inner: PatchSystem, widest: float) -> FloatArray:
+        """Ends (2,) of the next patch, the widest of small error if flows grow as in the last patch.
+
+        ``inner``: the system at the front.
+        """
+        size = PatchSize(inner.problem, self.growth)
         widths = np.append(_WIDTHS[_WIDTHS < widest], widest)
-        index = bisect_left(
-            range(widths.size),
-            _TOLERANCE,
-            key=lambda i: size.error(self.ends(float(widths[i])), _DAMPING, nodes=_NODES),
-        )
+        no_change = np.zeros((len(inner.system.parts), 1))
+
+        def error(width: float) -> float:
+            ends = self.ends(width)
+            by_deviation = size.deviation(ends, _DAMPING, no_change, inner.deviation)
+            by_polynomial = size.error(ends, _DAMPING, nodes=_NODES)
+            return max(by_polynomial / _TOLERANCE, by_deviation / _DEVIATION_TOLERANCE)
+
+        index = bisect_left(range(widths.size), 1.0, key=lambda i: error(float(widths[i])))
         return self.ends(float(widths[max(index - 1, 0)]))
 
 
@@ -181,7 +189,7 @@ class _Search:
         inner = self.systems(side.front, side.front)
         if inner is None:
             return None
-        ends = side.next_ends(inner.problem, self.systems.widest)
+        ends = side.next_ends(inner, self.systems.widest)
         of_patch = self.systems(*ends.tolist())
         if of_patch is None:
             return None
