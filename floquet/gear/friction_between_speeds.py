@@ -8,25 +8,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from functools import cache
+from functools import cache, cached_property
 from typing import NamedTuple
 
 import numpy as np
 
 from floquet.gear.axes import GearVariation, LawOverSpeed, depends_on_speed, operating_rpm
 from lumped.friction.base import FIT_TOLERANCE, FrictionLaw
-from lumped.friction.registry import law_of
-from lumped.typing import FloatArray
+from lumped.typing import BoolArray, FloatArray
 
-#: Ratio of neighbouring reference speeds where mu has no factors over speed.
-_RATIO = 1.01
-#: Largest deviation of law II from a sum of two functions, over the mean of |mu| times the path, before a
-#: reference speed of its own serves.
-_LARGEST_DEVIATION = 1e-4
-#: Ratio of neighbouring speeds at which the mean of law II is computed, and the largest deviation of this mean
-#: from lines in between, over the mean times the path; the fits of law II alone cause some 1e-8.
-_ANCHORS = 1.5
-_LARGEST_LINE_DEVIATION = 1e-7
+#: Ratios of neighbouring speeds between which one reference serves: where mu is nearly a sum of functions with
+#: factors, and where a change of mu is no more than a bound.
+_WIDE = 1.5
+_NARROW = 1.01
+#: Largest deviation between wide speeds, over the mean of |mu| times the path; the fits alone cause some 1e-8.
+_LARGEST_DEVIATION = 1e-7
 _EQUAL = 1e-12  # values of mu that are the same, relative
 #: Of the mean of law II at an end of an interval and at the reference speed, both computed from fits.
 _FIT_ERRORS = 4.0 * FIT_TOLERANCE
@@ -56,12 +52,23 @@ class ClippedLengths(NamedTuple):
     zero: float
 
 
+class Speeds(NamedTuple):
+    """An interval of speeds [rpm]."""
+
+    low: float
+    high: float
+
+
+def _one_factor(speeds: FloatArray) -> FloatArray:
+    return np.ones((speeds.size, 1))
+
+
 class FrictionBetweenSpeeds:
     """The friction law of a variation between any two speeds.
 
     Parameters
     ----------
-    variation : its operating speed is the reference wherever mu is a sum of functions with factors
+    variation : its operating speed is the reference wherever mu is a function with a factor
     """
 
     def __init__(self, variation: GearVariation) -> None:
@@ -71,32 +78,67 @@ class FrictionBetweenSpeeds:
         self.none = pair.friction.law == "none"
         if not self.constant:
             self.law = LawOverSpeed.of(variation)
-            self.in_force = self.law.in_force(self.reference)
             self.length = self.law.ends[1] - self.law.ends[0]
-        #: Largest width of an interval over its lower speed.
-        self.widest = 1.0 if self.constant or self.in_force is not None else _RATIO - 1.0
+        # An instance serves one search: its results are kept as long.
+        self.line_of_the_mean = cache(self._line_of_the_mean)
+        self.shifted = cache(self._shifted)
+        self.bounded_change = cache(self._bounded_change)
+
+    @property
+    def widest(self) -> float:
+        """Largest width of an interval over its lower speed."""
+        return 1.0 if self.constant or self._in_force(self.reference) is not None else _NARROW - 1.0
+
+    def _in_force(self, rpm: float) -> FrictionLaw | None:
+        return self.law.in_force(rpm)
 
     def patch(self, low: float, high: float) -> SpeedPatch | None:
         """Friction from a speed to another speed [rpm]; None: no bound is known."""
         if self.constant:
-            return SpeedPatch(self.reference, None, lambda speeds: np.ones((speeds.size, 1)), 0.0)
-        in_force = self.in_force
+            return SpeedPatch(self.reference, None, _one_factor, 0.0)
+        law = self._in_force(self.reference)
         # The film grows with speed everywhere, so that a law in force at both ends is in force in between.
-        if in_force is None or any(self.law.in_force(rpm) is not in_force for rpm in (low, high)):
-            return None
+        if law is None or any(self._in_force(rpm) is not law for rpm in (low, high)):
+            return self.bounded_change(self._around(low, high, _NARROW))
         if self.law.mean_is_of_law_two(self.reference):
-            return self._by_the_mean(in_force, low, high)
-        if in_force.factor is not None:
-            return SpeedPatch(self.reference, None, self._power(in_force), 0.0)
-        return None if in_force.shift is None else self._shifted(in_force, low, high)
+            patch = self.line_of_the_mean(law, self._around(low, high, _WIDE))
+            exact = self._is_small(patch)
+            return patch if exact else self.line_of_the_mean(law, self._around(low, high, _NARROW))
+        if law.factor is not None:
+            return SpeedPatch(self.reference, None, self._power(law), 0.0)
+        if law.shift is None:
+            return self.bounded_change(self._around(low, high, _NARROW))
+        patch = self.shifted(law, self._around(low, high, _WIDE))
+        return patch if self._is_small(patch) else self.shifted(law, self._around(low, high, _NARROW))
 
     def bounds(self, low: float, high: float) -> SpeedPatch | None:
         """Friction with factors that lie between the factors at both ends; None: no bound is known."""
-        patch = self.patch(low, high)
-        if patch is None or self.constant or not self.law.mean_is_of_law_two(self.reference):
-            return patch
-        # The mean of law II falls with speed.
-        return patch._replace(deviation=_FIT_ERRORS * self.length)
+        if self.constant:
+            return self.patch(low, high)
+        law = self._in_force(self.reference)
+        if law is None or any(self._in_force(rpm) is not law for rpm in (low, high)):
+            return None
+        if self.law.mean_is_of_law_two(self.reference):  # which falls with speed
+            deviation = law.average_slope * _FIT_ERRORS * self.length
+            return SpeedPatch(self.reference, None, self._power(law), deviation)
+        if law.shift is not None:
+            return self._shifted(law, Speeds(low, high))
+        return self.patch(low, high) if law.factor is not None else None
+
+    def _around(self, low: float, high: float, ratio: float) -> Speeds:
+        """The shortest interval of powers of a ratio times the reference around two speeds."""
+        first, last = (math.log(rpm / self.reference) / math.log(ratio) for rpm in (low, high))
+        start = math.floor(first)
+        end = max(math.ceil(last), start + 1)
+        return Speeds(min(self.reference * ratio**start, low), max(self.reference * ratio**end, high))
+
+    def _is_small(self, patch: SpeedPatch) -> bool:
+        return patch.deviation <= _LARGEST_DEVIATION * self.mean * self.length
+
+    @cached_property
+    def mean(self) -> float:
+        """Mean of |mu| at the operating speed."""
+        return self.law.mean(self.reference)
 
     def _factor(self, law: FrictionLaw, rpm: float) -> float:
         assert law.factor is not None
@@ -106,17 +148,7 @@ class FrictionBetweenSpeeds:
     def _power(self, law: FrictionLaw) -> Callable[[FloatArray], FloatArray]:
         return lambda speeds: np.array([[self._factor(law, float(rpm))] for rpm in speeds])
 
-    def _by_the_mean(self, law: FrictionLaw, low: float, high: float) -> SpeedPatch:
-        """Laws I and IV: between the anchors around an interval, if mu deviates little there; else in it."""
-        first = math.floor(math.log(low / self.reference) / math.log(_ANCHORS))
-        end = max(math.ceil(math.log(high / self.reference) / math.log(_ANCHORS)), first + 1)
-        wide = self._line_of_the_mean(law, self.reference * _ANCHORS**first, self.reference * _ANCHORS**end)
-        if wide.deviation <= _LARGEST_LINE_DEVIATION * self.law.mean(self.reference) * self.length:
-            return wide
-        return self._line_of_the_mean(law, low, high)
-
-    @cache  # noqa: B019, an instance serves one search
-    def _line_of_the_mean(self, law: FrictionLaw, low: float, high: float) -> SpeedPatch:
+    def _line_of_the_mean(self, law: FrictionLaw, speeds: Speeds) -> SpeedPatch:
         """Laws I and IV: mu is proportional to the mean of law II, nearly a line over log speed.
 
         The slope of this mean is the slope of law II times the share of the path on which law II is not
@@ -124,64 +156,108 @@ class FrictionBetweenSpeeds:
         upper bound does not. So the mean deviates from the line through both ends by half the difference of
         the slopes times the length of the interval at most.
         """
-        ends = [self._factor(law, rpm) for rpm in (low, high)]
-        width = math.log(high / low)
-        slope = (ends[1] - ends[0]) / width if width else 0.0
+        ends = [self._factor(law, rpm) for rpm in speeds]
+        slope = (ends[1] - ends[0]) / math.log(speeds.high / speeds.low)
 
-        def factors(speeds: FloatArray) -> FloatArray:
-            return np.asarray(ends[0] + slope * np.log(speeds / low)[:, None])
+        def factors(rpm: FloatArray) -> FloatArray:
+            return np.asarray(ends[0] + slope * np.log(rpm / speeds.low)[:, None])
 
         law_two = self.law.law_two()
-        at_low, at_high = (self.clipped(law_two, rpm) for rpm in (low, high))
+        at_low, at_high = (clipped_lengths(law_two, rpm) for rpm in speeds)
         share = (at_low.upper + max(at_high.zero - at_low.zero, 0.0)) / (law_two.ends[1] - law_two.ends[0])
-        rise = abs(self._rise(law_two, low, high))
-        of_mean = 0.5 * rise * share + _FIT_ERRORS
+        of_mean = 0.5 * abs(_rise(law_two, *speeds)) * share + _FIT_ERRORS
         return SpeedPatch(self.reference, None, factors, law.average_slope * of_mean * self.length)
 
-    @staticmethod
-    def _rise(law_two: LawOverSpeed, low: float, high: float) -> float:
-        """By how much |mu| of law II rises from a speed to another speed where it is not clipped."""
-        shift = law_two.law.shift
-        assert shift is not None
-        return shift(law_two.at(high), law_two.settings) - shift(law_two.at(low), law_two.settings)
+    def _shifted(self, law: FrictionLaw, speeds: Speeds) -> SpeedPatch:
+        """Law II: |mu| rises as a whole, but where it is clipped at a speed or at the reference speed.
 
-    def _shifted(self, law: FrictionLaw, low: float, high: float) -> SpeedPatch:
-        """Law II: |mu| rises as a whole, but where it is clipped at the speed or at the reference speed.
-
-        There |mu| rises by less. The reference is the operating speed, or else a speed near the interval.
+        There |mu| rises by less. The reference is in the middle of the interval.
         """
-        patch = self._shifted_from(self.reference, law, low, high)
-        if patch.deviation > _LARGEST_DEVIATION * self.law.mean(self.reference) * self.length:
-            middle = math.sqrt(low * high)
-            steps = round(math.log(middle / self.reference) / math.log(_RATIO))
-            patch = self._shifted_from(self.reference * _RATIO**steps, law, low, high)
-        return patch
+        reference = math.sqrt(speeds.low * speeds.high)
+        shifting = LawOverSpeed(self.law.path, self.law.ends, self.law.settings, law, to_mean=False)
+        level = shifting.mean(reference)
 
-    def _shifted_from(self, reference: float, law: FrictionLaw, low: float, high: float) -> SpeedPatch:
-        at_reference = LawOverSpeed(
-            self.law.path, self.law.ends, self.law.settings, law, to_mean=False
-        )
-        mean = at_reference.mean(reference)
+        each = _rise(shifting, *speeds) / math.log(speeds.high / speeds.low)
 
-        def factors(speeds: FloatArray) -> FloatArray:
-            rises = np.array([self._rise(at_reference, reference, float(rpm)) for rpm in speeds])
-            return at_reference.factors(reference, True, np.stack([np.ones_like(rises), rises], axis=1))
+        def factors(rpm: FloatArray) -> FloatArray:
+            rises = each * np.log(rpm / reference)
+            return shifting.factors(reference, True, np.stack([np.ones_like(rises), rises], axis=1))
 
-        rise = max(abs(self._rise(at_reference, reference, rpm)) for rpm in (low, high))
-        upper = self.clipped(at_reference, min(low, reference)).upper
-        zero = self.clipped(at_reference, max(high, reference)).zero
-        deviation = rise * (upper + zero) + _FIT_ERRORS * self.length
-        return SpeedPatch(reference, mean, factors, deviation)
+        rise = max(abs(_rise(shifting, reference, rpm)) for rpm in speeds)
+        clipped = clipped_lengths(shifting, speeds.low).upper + clipped_lengths(shifting, speeds.high).zero
+        return SpeedPatch(reference, level, factors, rise * clipped + _FIT_ERRORS * self.length)
 
-    def clipped(self, law_two: LawOverSpeed, rpm: float) -> ClippedLengths:
-        """Where law II is at its bounds at a speed, between its switches and the pitch point."""
-        low, high = law_two.ends
-        _, switches = law_two.values(rpm)
-        breaks = np.array([low, *sorted(xi for xi in switches if low < xi < high), high])
-        width = np.diff(breaks)
-        share = np.array([0.3, 0.7])
-        positions = breaks[:-1, None] + width[:, None] * share
-        mu = np.abs(law_two.law.signed(positions, *law_two.where_friction_acts(rpm)))
-        zero = (mu == 0.0).all(axis=1)
-        upper = ~zero & (np.abs(np.diff(mu, axis=1)[:, 0]) <= _EQUAL * mu[:, 0])
-        return ClippedLengths(float(width[upper].sum()), float(width[zero].sum()))
+    def _bounded_change(self, speeds: Speeds) -> SpeedPatch | None:
+        """Law V where several laws are in force: mu at the middle speed, and how far mu is from it.
+
+        Where one law is in force at both ends, mu changes by what speed changes this law. Where another law
+        comes into force in between, mu changes by the largest value of both laws at most.
+        """
+        if self.law.law.parts is None:
+            return None
+        reference = math.sqrt(speeds.low * speeds.high)
+        breaks = {self.law.ends[0], self.law.path.L_XP, self.law.ends[1]}
+        for rpm in (*speeds, reference):
+            breaks.update(xi for xi in self.law.values(rpm)[1] if self.law.ends[0] < xi < self.law.ends[1])
+        xi = np.array(sorted(breaks))
+        middle = 0.5 * (xi[1:] + xi[:-1])
+        change = np.zeros(middle.size)
+        at_low, at_high = (self._parts(middle, rpm) for rpm in speeds)
+        largest = np.zeros(middle.size)
+        for law, inside in (*at_low, *at_high):
+            largest[inside] = np.maximum(largest[inside], self._largest(law, speeds))
+        for (law, inside_low), (_, inside_high) in zip(at_low, at_high, strict=True):
+            inside = inside_low & inside_high
+            change[inside] = self._change(law, speeds, reference)
+            largest[inside] = np.inf
+        same = np.isinf(largest)
+        total = float((np.where(same, change, largest) * np.diff(xi)).sum())
+        return SpeedPatch(reference, None, _one_factor, total + _FIT_ERRORS * self.length)
+
+    def _parts(self, xi: FloatArray, rpm: float) -> list[tuple[FrictionLaw, BoolArray]]:
+        assert self.law.law.parts is not None
+        return self.law.law.parts(xi, *self.law.where_friction_acts(rpm))
+
+    def _largest(self, law: FrictionLaw, speeds: Speeds) -> float:
+        """Bound on |mu| of one law at all speeds of an interval. Speed changes each law in one direction."""
+        return max(self._bound(law, rpm) for rpm in speeds)
+
+    def _bound(self, law: FrictionLaw, rpm: float) -> float:
+        """Bound on |mu| of one law at one speed, on parts of the path on both sides of the pitch point."""
+        path, settings = self.law.where_friction_acts(rpm)
+        assert law.analytic is not None
+        switches = [xi for xi in (path.L_XP, *law.switches(path, settings)) if path.L_XA < xi < path.L_XD]
+        edges = np.unique(np.concatenate([np.linspace(path.L_XA, path.L_XD, 33), switches]))
+        return float(law.analytic(edges[:-1], edges[1:], path, settings)[1].max())
+
+    def _change(self, law: FrictionLaw, speeds: Speeds, reference: float) -> float:
+        """Bound on the change of |mu| of one law between a reference speed and the speeds of an interval."""
+        paths = [self.law.where_friction_acts(rpm)[0] for rpm in (*speeds, reference)]
+        if law.shift is not None:
+            shifts = [law.shift(path, self.law.settings) for path in paths]
+            return max(abs(shifts[0] - shifts[2]), abs(shifts[1] - shifts[2]))
+        if law.factor is None:
+            return self._largest(law, speeds)
+        unit = law.factor(paths[2], self.law.settings)
+        ratios = [law.factor(path, self.law.settings) / unit if unit else 1.0 for path in paths[:2]]
+        return max(abs(ratio - 1.0) for ratio in ratios) * self._bound(law, reference)
+
+
+def _rise(law_two: LawOverSpeed, low: float, high: float) -> float:
+    """By how much |mu| of law II rises from a speed to another speed where it is not clipped."""
+    shift = law_two.law.shift
+    assert shift is not None
+    return shift(law_two.at(high), law_two.settings) - shift(law_two.at(low), law_two.settings)
+
+
+def clipped_lengths(law_two: LawOverSpeed, rpm: float) -> ClippedLengths:
+    """Where law II is at its bounds at a speed, between its switches and the pitch point."""
+    low, high = law_two.ends
+    _, switches = law_two.values(rpm)
+    breaks = np.array([low, *sorted(xi for xi in switches if low < xi < high), high])
+    width = np.diff(breaks)
+    positions = breaks[:-1, None] + width[:, None] * np.array([0.3, 0.7])
+    mu = np.abs(law_two.law.signed(positions, *law_two.where_friction_acts(rpm)))
+    zero = (mu == 0.0).all(axis=1)
+    upper = ~zero & (np.abs(np.diff(mu, axis=1)[:, 0]) <= _EQUAL * mu[:, 0])
+    return ClippedLengths(float(width[upper].sum()), float(width[zero].sum()))

@@ -28,7 +28,8 @@ from lumped.typing import FloatArray, IntArray
 
 _RTOL = 1e-12  # of the polynomials of the gains
 #: Some tenths of a second; see docs/verification/floquet.md.
-_EFFORT = Effort(vibrations=4000.0, intervals=2000, patches=120)
+_EFFORT = Effort(vibrations=4000.0, intervals=2000, patches=100)
+_WORK_OF_FIT = 4  # patches that take as long as a fit of the gains
 
 
 @dataclass(frozen=True, eq=False)
@@ -173,7 +174,7 @@ class _Systems:
         self.variation = variation
         self.friction = FrictionBetweenSpeeds(variation)
         self.widest = self.friction.widest
-        self._reference = math.nan
+        self._fits: dict[float, tuple[RankOneSystem, Problem]] = {}
         feedback = feedback_system(variation)
         off_line = OffLineOfAction.of(feedback)
         self.separate_fade = bool((off_line.exponents.real + off_line.errors < 0.0).all())
@@ -182,17 +183,18 @@ class _Systems:
         self.reach = friction_reach(feedback.system, feedback.metric)
 
     def _fit(self, patch: SpeedPatch) -> tuple[RankOneSystem, Problem]:
-        """The feedback block at the reference speed of a patch, once for neighbouring patches."""
-        if patch.reference != self._reference:
+        """The feedback block at the reference speed of a patch, once for each reference speed."""
+        if patch.reference not in self._fits:
             levels = [] if self.friction.none else [0.0]
             levels += [] if patch.level is None else [patch.level]
-            with warnings.catch_warnings():  # a result at the operating speed tells where a law leaves its range
+            with (
+                warnings.catch_warnings()
+            ):  # a result at the operating speed tells where a law leaves its range
                 warnings.simplefilter("ignore", LawRangeWarning)
                 at_reference = GEAR_AXES["speed_rpm"].apply(self.variation, patch.reference)
-                self._system = fitted_block(feedback_system(at_reference), 1.0, _RTOL, levels)
-            self._problem = packed(self._system)
-            self._reference = patch.reference
-        return self._system, self._problem
+                system = fitted_block(feedback_system(at_reference), 1.0, _RTOL, levels)
+            self._fits[patch.reference] = system, packed(system)
+        return self._fits[patch.reference]
 
     def __call__(self, shortest: float, longest: float) -> PatchSystem | None:
         """See `SystemOverPeriod`."""
@@ -200,12 +202,13 @@ class _Systems:
         patch = self.friction.patch(turns / longest, turns / shortest)
         if patch is None:
             return None
+        work = 1 if patch.reference in self._fits else _WORK_OF_FIT
         system, problem = self._fit(patch)
 
         def factors(T: FloatArray) -> FloatArray:
             return patch.factors(turns / T)[:, : len(system.varied)]
 
-        return PatchSystem(system, problem, factors, self._deviation(patch))
+        return PatchSystem(system, problem, factors, self._deviation(patch), work)
 
     def _deviation(self, patch: SpeedPatch) -> GainDeviation:
         """Integrals over the phase of what mu deviates by, times the gains by a unit of mu."""

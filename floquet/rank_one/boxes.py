@@ -267,7 +267,9 @@ class PatchSize:
         norm of the change of T A over the cycle. Then M changes by g (exp(g e) - 1) at most (Gronwall).
         """
         one = np.ones(1)
-        d = float(self.change(T, damping, one, one, factor_change[:, :1])[0])  # the ellipse contains the patch
+        d = float(
+            self.change(T, damping, one, one, factor_change[:, :1])[0]
+        )  # the ellipse contains the patch
         flow = self.growth * math.exp(min(self.growth * d, 700.0))
         norms = self.norms[0], damping.max() * self.norms[1]
         e = float(T.max()) * (deviation.w * norms[0] + deviation.wd * norms[1])
@@ -328,6 +330,7 @@ class FlowPolynomial:
             np.tile(z, x.size),
             np.repeat(factor_values[:-1], y.size, 0),
             tolerance=tolerance,
+            problem=problem,
         )
         matrices = flow.matrices.reshape(x.size, y.size, *flow.matrices.shape[1:])
         gains = np.append(1.0, factor_values[-1])

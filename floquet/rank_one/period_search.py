@@ -35,10 +35,16 @@ _DAMPING = np.ones(2)  # the damping of the system
 _TOLERANCE = 1e-8
 _DEVIATION_TOLERANCE = 1e-5
 _STEP_TOLERANCE = 1e-13
+#: Largest ratio of the error by gains that deviate at the end of a patch to that at its beginning, and how often
+#: a patch is halved for it.
+_DEVIATION_GROWTH = 4.0
+_NARROWINGS = 6
 #: Widths of a patch over its first period, of which the largest is taken that the tolerance allows.
 _WIDTHS = np.geomspace(1e-5, 1.0, 81)
 #: An interval narrower than this part of its period is not halved.
 _NARROWEST = 1e-7
+#: Places in a patch at which single periods are judged before intervals are halved.
+_LOOKS = np.array([-0.9, -0.3, 0.1, 0.5, 0.95])
 _FIRST_GROWTH = 2.0
 _LARGEST_GROWTH = 10.0
 #: Patches on each side that are decided together, at most.
@@ -53,12 +59,14 @@ class PatchSystem(NamedTuple):
     system, problem : the system, and the same in the form of the kernels
     factors : on the varied gains, powers of the period or linear in its logarithm
     deviation : of the gains that are meant
+    work : 1, or more where the system was fitted for this patch
     """
 
     system: RankOneSystem
     problem: Problem
     factors: Factors
     deviation: GainDeviation
+    work: int = 1
 
 
 class SystemOverPeriod(Protocol):
@@ -83,7 +91,7 @@ class Effort(NamedTuple):
     ----------
     vibrations : sum over all patches of the vibrations of the fastest mode in their longest period
     intervals : number of intervals that are judged
-    patches : number of patches
+    patches : sum of the work of all patches, see `PatchSystem`
     """
 
     vibrations: float
@@ -141,16 +149,22 @@ class _Side:
         """
         size = PatchSize(inner.problem, self.growth)
         widths = np.append(_WIDTHS[_WIDTHS < widest], widest)
-        no_change = np.zeros((len(inner.system.parts), 1))
+        at_front = self.by_deviation(self.ends(0.0), inner)
+        largest = max(_DEVIATION_TOLERANCE, _DEVIATION_GROWTH * at_front)
 
         def error(width: float) -> float:
             ends = self.ends(width)
-            by_deviation = size.deviation(ends, _DAMPING, no_change, inner.deviation)
             by_polynomial = size.error(ends, _DAMPING, nodes=_NODES)
-            return max(by_polynomial / _TOLERANCE, by_deviation / _DEVIATION_TOLERANCE)
+            return max(by_polynomial / _TOLERANCE, self.by_deviation(ends, inner) / largest)
 
         index = bisect_left(range(widths.size), 1.0, key=lambda i: error(float(widths[i])))
         return self.ends(float(widths[max(index - 1, 0)]))
+
+    def by_deviation(self, ends: FloatArray, patch: PatchSystem) -> float:
+        """Error of the monodromy matrix of a patch by gains that deviate, if factors do not change."""
+        size = PatchSize(patch.problem, self.growth)
+        no_change = np.zeros((len(patch.system.parts), 1))
+        return size.deviation(ends, _DAMPING, no_change, patch.deviation)
 
 
 class _Patch(NamedTuple):
@@ -191,6 +205,12 @@ class _Search:
             return None
         ends = side.next_ends(inner, self.systems.widest)
         of_patch = self.systems(*ends.tolist())
+        largest = _DEVIATION_GROWTH * max(_DEVIATION_TOLERANCE, side.by_deviation(ends, inner))
+        for _ in range(_NARROWINGS):  # beyond the front a law may change faster
+            if of_patch is not None and side.by_deviation(ends, of_patch) <= largest:
+                break
+            ends = side.ends(0.5 * float(ends[1] / ends[0] - 1.0))
+            of_patch = self.systems(*ends.tolist())
         if of_patch is None:
             return None
         polynomial = FlowPolynomial.of(
@@ -200,13 +220,15 @@ class _Search:
         if polynomial is None:
             return None
         self.vibrations += float(of_patch.problem.omega.max() * ends[1]) / (2.0 * math.pi)
-        self.patches += 1
-        side.front = float(ends[1] if side.end > side.front else ends[0])
+        self.patches += inner.work + of_patch.work - 1
         side.growth = min(1.1 * polynomial.growth, _LARGEST_GROWTH)
         return _Patch(ends, polynomial)
 
     def next_patches(self, sides: list[_Side], most: int) -> list[_Patch]:
-        """Patches of each side, nearer than the nearest unstable interval."""
+        """Patches of each side, nearer than the nearest unstable interval.
+
+        A side ends at a patch in which none of some single periods is decided: no interval would be either.
+        """
         patches = []
         for side in sides:
             for _ in range(most):
@@ -214,9 +236,10 @@ class _Search:
                 if side.done or float(self.distance(front, front)[0]) >= self.nearest:
                     break
                 patch = self.patch(side)
-                if patch is None:
+                if patch is None or not _decided_somewhere(patch.polynomial):
                     side.end = side.front
                     break
+                side.front = float(patch.ends[1] if side.end > side.front else patch.ends[0])
                 patches.append(patch)
         return patches
 
@@ -237,8 +260,7 @@ class _Search:
             distance = self.distance(low, high)
             self.nearest = min(self.nearest, float(distance[verdict < 0].min(initial=math.inf)))
             divided = (verdict == 0) & (distance < self.nearest) & (high - low > _NARROWEST * high)
-            if self.intervals >= self.effort.intervals:
-                divided[:] = False
+            divided &= self.intervals < self.effort.intervals
             self.decided.append(PeriodVerdicts(low[~divided], high[~divided], verdict[~divided]))
             boxes = _halves(IntervalBoxes(*(values[divided] for values in boxes)))
 
@@ -247,6 +269,12 @@ class _Search:
         """Whether the effort is spent."""
         vibrations, intervals, patches = self.effort
         return self.vibrations >= vibrations or self.intervals >= intervals or self.patches >= patches
+
+
+def _decided_somewhere(polynomial: FlowPolynomial) -> bool:
+    """Whether any of some single periods of a patch is decided."""
+    boxes = IntervalBoxes(np.zeros(_LOOKS.size, dtype=np.intp), _LOOKS, _LOOKS)
+    return bool(decided_intervals([polynomial], boxes).any())
 
 
 def _halves(boxes: IntervalBoxes) -> IntervalBoxes:
