@@ -81,7 +81,7 @@ class Cluster(NamedTuple):
     block : (m, m) triangular, its diagonal the computed eigenvalues
     change : bound on the 2-norm of the change of the block by the errors; inf: the eigenvalues are unknown
     basis : (n, m) columns that span nearly the invariant subspace
-    tilt : bound on the 2-norm of what is to be added to ``basis`` for the invariant subspace of the exact matrix
+    tilt : bound on the 2-norm of what ``basis`` lacks of a basis of the exact invariant subspace
     """
 
     members: list[int]
@@ -101,8 +101,8 @@ def _separated(
     p^2 = 1 + |X|^2. The diagonal blocks change by at most p e, the off-diagonal blocks by p^2 e and e. Let f
     be the change of the upper off-diagonal block, sep the smallest singular value of X -> B X - X D, and
     s = sep - 2 p e. If 4 e f < s^2, an invariant subspace persists, and the block of the cluster changes by
-    at most p e + 2 e f/s (Stewart and Sun, Matrix Perturbation Theory, theorem V.2.1). The subspace is that of
-    the columns Z [I + X P, P] with |P| <= 2 e/s, so that it is Z_1 but for (Z_1 X + Z_2) P.
+    at most p e + 2 e f/s (Stewart and Sun, Matrix Perturbation Theory, theorem V.2.1). The columns
+    Z [I + X P, P] span the subspace, |P| <= 2 e/s: Z_1 but for (Z_1 X + Z_2) P.
     """
     n = T.shape[0]
     m = len(members)

@@ -11,7 +11,6 @@ from typing import NamedTuple
 import numpy as np
 
 from floquet.engine.multipliers import Cluster, clusters_of
-
 from lumped.typing import BoolArray, ComplexArray, FloatArray
 
 _U = 0.5 * float(np.finfo(np.float64).eps)
@@ -98,7 +97,7 @@ def form_of_motion(mass: FloatArray, gyroscopic: FloatArray, coordinates: FloatA
 
 
 def definite_signatures(matrix: FloatArray, delta: float, form: SkewForm) -> bool:
-    """Whether all multipliers are on the unit circle and every motion is bounded: PROVEN by Krein's signatures.
+    """Whether all multipliers are on the unit circle and motions bounded: PROVEN by Krein's signatures.
 
     The exact matrix keeps the Hermitian form x^H (i S) y. On an invariant subspace on which this form is
     definite, the matrix keeps a length: all multipliers there have modulus 1, and no power grows, though

@@ -1,7 +1,7 @@
-"""Friction everywhere between two speeds: a sum of fitted functions with factors, and what mu deviates from it.
+"""Friction between two speeds: a sum of fitted functions with factors, and how far mu is from this sum.
 
-`floquet.gear.axes.friction_families` compares laws at single speeds. Proofs over intervals of speed need a bound
-at all speeds of an interval. Sources: docs/theory/proven_bounds.md, "The nearest unstable speed".
+`floquet.gear.axes.friction_families` compares laws at single speeds. Proofs over intervals of speed need a
+bound at all speeds of an interval. Sources: docs/theory/proven_bounds.md, "The nearest unstable speed".
 """
 
 from __future__ import annotations
@@ -15,14 +15,17 @@ import numpy as np
 
 from floquet.gear.axes import GearVariation, LawOverSpeed, depends_on_speed, operating_rpm
 from lumped.friction.base import FIT_TOLERANCE, FrictionLaw
+from lumped.path_function import PathFunction
+from lumped.path_of_contact.friction import fit_law
 from lumped.typing import BoolArray, FloatArray
 
-#: Ratios of neighbouring speeds between which one reference serves: where mu is nearly a sum of functions with
-#: factors, and where a change of mu is no more than a bound.
+#: Ratios of neighbouring speeds between which one reference serves; the narrow ratio where the bound is large.
 _WIDE = 1.5
+_MIDDLE = 1.1
 _NARROW = 1.01
-#: Largest deviation between wide speeds, over the mean of |mu| times the path; the fits alone cause some 1e-8.
+#: Largest deviations between wide speeds, over the mean of |mu| times the path; the fits cause some 1e-8.
 _LARGEST_DEVIATION = 1e-7
+_LARGEST_MIDDLE_DEVIATION = 1e-5
 _EQUAL = 1e-12  # values of mu that are the same, relative
 #: Of the mean of law II at an end of an interval and at the reference speed, both computed from fits.
 _FIT_ERRORS = 4.0 * FIT_TOLERANCE
@@ -101,15 +104,12 @@ class FrictionBetweenSpeeds:
         if law is None or any(self._in_force(rpm) is not law for rpm in (low, high)):
             return self.bounded_change(self._around(low, high, _NARROW))
         if self.law.mean_is_of_law_two(self.reference):
-            patch = self.line_of_the_mean(law, self._around(low, high, _WIDE))
-            exact = self._is_small(patch)
-            return patch if exact else self.line_of_the_mean(law, self._around(low, high, _NARROW))
+            return self._nearly_exact(self.line_of_the_mean, law, low, high)
         if law.factor is not None:
             return SpeedPatch(self.reference, None, self._power(law), 0.0)
         if law.shift is None:
             return self.bounded_change(self._around(low, high, _NARROW))
-        patch = self.shifted(law, self._around(low, high, _WIDE))
-        return patch if self._is_small(patch) else self.shifted(law, self._around(low, high, _NARROW))
+        return self._nearly_exact(self.shifted, law, low, high)
 
     def bounds(self, low: float, high: float) -> SpeedPatch | None:
         """Friction with factors that lie between the factors at both ends; None: no bound is known."""
@@ -132,8 +132,15 @@ class FrictionBetweenSpeeds:
         end = max(math.ceil(last), start + 1)
         return Speeds(min(self.reference * ratio**start, low), max(self.reference * ratio**end, high))
 
-    def _is_small(self, patch: SpeedPatch) -> bool:
-        return patch.deviation <= _LARGEST_DEVIATION * self.mean * self.length
+    def _nearly_exact(
+        self, between: Callable[[FrictionLaw, Speeds], SpeedPatch], law: FrictionLaw, low: float, high: float
+    ) -> SpeedPatch:
+        """Friction between the widest speeds of a small deviation."""
+        for ratio, largest in ((_WIDE, _LARGEST_DEVIATION), (_MIDDLE, _LARGEST_MIDDLE_DEVIATION)):
+            patch = between(law, self._around(low, high, ratio))
+            if patch.deviation <= largest * self.mean * self.length:
+                return patch
+        return between(law, self._around(low, high, _NARROW))
 
     @cached_property
     def mean(self) -> float:
@@ -191,56 +198,68 @@ class FrictionBetweenSpeeds:
         """Law V where several laws are in force: mu at the middle speed, and how far mu is from it.
 
         Where one law is in force at both ends, mu changes by what speed changes this law. Where another law
-        comes into force in between, mu changes by the largest value of both laws at most.
+        comes into force in between, mu changes by the largest |mu| of both laws at most.
         """
         if self.law.law.parts is None:
             return None
         reference = math.sqrt(speeds.low * speeds.high)
-        breaks = {self.law.ends[0], self.law.path.L_XP, self.law.ends[1]}
+        low, high = self.law.ends
+        breaks = {low, self.law.path.L_XP, high}
         for rpm in (*speeds, reference):
-            breaks.update(xi for xi in self.law.values(rpm)[1] if self.law.ends[0] < xi < self.law.ends[1])
+            _, switches = self.law.values(rpm)
+            breaks.update(xi for xi in switches if low < xi < high)
         xi = np.array(sorted(breaks))
+        at_low, at_middle, at_high = (
+            _sizes(fit_law(*self.law.where_friction_acts(rpm), self.law.law.name), xi)
+            for rpm in (speeds.low, reference, speeds.high)
+        )
         middle = 0.5 * (xi[1:] + xi[:-1])
         change = np.zeros(middle.size)
-        at_low, at_high = (self._parts(middle, rpm) for rpm in speeds)
-        largest = np.zeros(middle.size)
-        for law, inside in (*at_low, *at_high):
-            largest[inside] = np.maximum(largest[inside], self._largest(law, speeds))
-        for (law, inside_low), (_, inside_high) in zip(at_low, at_high, strict=True):
-            inside = inside_low & inside_high
-            change[inside] = self._change(law, speeds, reference)
-            largest[inside] = np.inf
-        same = np.isinf(largest)
-        total = float((np.where(same, change, largest) * np.diff(xi)).sum())
+        parts = zip(self._parts(middle, speeds.low), self._parts(middle, speeds.high), strict=True)
+        for (law, inside_low), (_, inside_high) in parts:
+            near = self._change(law, speeds.low, reference), self._change(law, speeds.high, reference)
+            by_law = np.maximum(near[0].of(at_middle), near[1].of(at_middle))
+            change = np.where(inside_low & inside_high, by_law, change)
+            # |mu| of a law falls with speed: of the law at the high speed it is largest at the low speed.
+            at_low_speed = at_high + self._change(law, speeds.low, speeds.high).of(at_high)
+            change = np.where(inside_high & ~inside_low, np.maximum(at_low, at_low_speed), change)
+        total = float((change * np.diff(xi)).sum()) * (1.0 + 1e-6)
         return SpeedPatch(reference, None, _one_factor, total + _FIT_ERRORS * self.length)
 
     def _parts(self, xi: FloatArray, rpm: float) -> list[tuple[FrictionLaw, BoolArray]]:
         assert self.law.law.parts is not None
         return self.law.law.parts(xi, *self.law.where_friction_acts(rpm))
 
-    def _largest(self, law: FrictionLaw, speeds: Speeds) -> float:
-        """Bound on |mu| of one law at all speeds of an interval. Speed changes each law in one direction."""
-        return max(self._bound(law, rpm) for rpm in speeds)
-
-    def _bound(self, law: FrictionLaw, rpm: float) -> float:
-        """Bound on |mu| of one law at one speed, on parts of the path on both sides of the pitch point."""
+    def _change(self, law: FrictionLaw, rpm: float, reference: float) -> Change:
+        """Bound on the change of |mu| of one law from a reference speed to a speed and in between."""
         path, settings = self.law.where_friction_acts(rpm)
-        assert law.analytic is not None
-        switches = [xi for xi in (path.L_XP, *law.switches(path, settings)) if path.L_XA < xi < path.L_XD]
-        edges = np.unique(np.concatenate([np.linspace(path.L_XA, path.L_XD, 33), switches]))
-        return float(law.analytic(edges[:-1], edges[1:], path, settings)[1].max())
-
-    def _change(self, law: FrictionLaw, speeds: Speeds, reference: float) -> float:
-        """Bound on the change of |mu| of one law between a reference speed and the speeds of an interval."""
-        paths = [self.law.where_friction_acts(rpm)[0] for rpm in (*speeds, reference)]
+        reference_path, _ = self.law.where_friction_acts(reference)
         if law.shift is not None:
-            shifts = [law.shift(path, self.law.settings) for path in paths]
-            return max(abs(shifts[0] - shifts[2]), abs(shifts[1] - shifts[2]))
+            return Change(0.0, abs(law.shift(path, settings) - law.shift(reference_path, settings)))
         if law.factor is None:
-            return self._largest(law, speeds)
-        unit = law.factor(paths[2], self.law.settings)
-        ratios = [law.factor(path, self.law.settings) / unit if unit else 1.0 for path in paths[:2]]
-        return max(abs(ratio - 1.0) for ratio in ratios) * self._bound(law, reference)
+            return Change(math.inf, 0.0)
+        unit = law.factor(reference_path, settings)
+        return Change(abs(law.factor(path, settings) / unit - 1.0) if unit else 0.0, 0.0)
+
+
+class Change(NamedTuple):
+    """Bound on the change of |mu|: a share of |mu|, and a number."""
+
+    share: float
+    shift: float
+
+    def of(self, mu: FloatArray) -> FloatArray:
+        """The bound where |mu| is at most so much."""
+        return self.share * mu + self.shift
+
+
+def _sizes(fit: PathFunction, xi: FloatArray) -> FloatArray:
+    """Bounds on |mu| of a fit between positions (k+1,), by the moduli of the terms of its pieces."""
+    powers = np.arange(len(fit.coefficients))[::-1, None]
+    of_piece = (np.abs(fit.coefficients) * np.diff(fit.breaks) ** powers).sum(axis=0)
+    first = np.clip(np.searchsorted(fit.breaks, xi[:-1], side="right") - 1, 0, of_piece.size - 1)
+    last = np.clip(np.searchsorted(fit.breaks, xi[1:], side="left") - 1, 0, of_piece.size - 1)
+    return np.array([of_piece[a : max(a, b) + 1].max() for a, b in zip(first, last, strict=True)])
 
 
 def _rise(law_two: LawOverSpeed, low: float, high: float) -> float:

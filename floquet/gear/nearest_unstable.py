@@ -28,7 +28,7 @@ from lumped.typing import FloatArray, IntArray
 
 _RTOL = 1e-12  # of the polynomials of the gains
 #: Some tenths of a second; see docs/verification/floquet.md.
-_EFFORT = Effort(vibrations=4000.0, intervals=2000, patches=100)
+_EFFORT = Effort(vibrations=1500.0, intervals=2000, patches=100)
 _WORK_OF_FIT = 4  # patches that take as long as a fit of the gains
 
 

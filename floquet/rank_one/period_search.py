@@ -1,7 +1,7 @@
 """Stability over the period at one damping, proven outwards from one period until an unstable one is proven.
 
-Patches of periods adjoin each other on both sides of the first period. On each patch the monodromy matrix is a
-polynomial with a bound on its error. Intervals of the patch are halved until each of them is proven or very
+Patches of periods adjoin each other on both sides of the first period. On each patch the monodromy matrix is
+a polynomial with a bound on its error. Intervals of the patch are halved until each of them is proven or very
 narrow. Intervals that stay undecided are part of the result.
 
 Sources: docs/theory/proven_bounds.md, "The nearest unstable speed".
@@ -31,12 +31,12 @@ from lumped.typing import FloatArray, IntArray
 
 _NODES = NodeCounts(24, 1)
 _DAMPING = np.ones(2)  # the damping of the system
-#: Largest error of the polynomial of a patch, by gains that deviate, and of the matrices at its nodes per step.
+#: Largest error of the polynomial of a patch, by gains that deviate, and of its matrices in each step.
 _TOLERANCE = 1e-8
 _DEVIATION_TOLERANCE = 1e-5
 _STEP_TOLERANCE = 1e-13
-#: Largest ratio of the error by gains that deviate at the end of a patch to that at its beginning, and how often
-#: a patch is halved for it.
+#: Largest ratio of the error by gains that deviate at the end of a patch to that at its beginning, and how
+#: often a patch is halved for this error.
 _DEVIATION_GROWTH = 4.0
 _NARROWINGS = 6
 #: Widths of a patch over its first period, of which the largest is taken that the tolerance allows.
@@ -148,7 +148,7 @@ class _Side:
         ``inner``: the system at the front.
         """
         size = PatchSize(inner.problem, self.growth)
-        widths = np.append(_WIDTHS[_WIDTHS < widest], widest)
+        widths = np.append(_WIDTHS[widest > _WIDTHS], widest)
         at_front = self.by_deviation(self.ends(0.0), inner)
         largest = max(_DEVIATION_TOLERANCE, _DEVIATION_GROWTH * at_front)
 

@@ -160,7 +160,7 @@ def _instability(results: Results) -> Fact:
 
 
 def proof_words(results: Results) -> str:
-    """Return a clause on the speeds at which the linear motion is proven stable, and on what was not searched."""
+    """Return a clause on the speeds at which the linear motion is proven stable, and on what is left."""
     proven = results.proven_stability
     low, high = proven.stable_rpm
     not_searched = f"unstable zones narrower than {number(results.chart_step, 3)} rpm were not searched"

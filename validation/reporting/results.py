@@ -379,7 +379,7 @@ class Results:
 
     @property
     def unstable_rpm(self) -> float:
-        """Unstable speed nearest to the operating speed, at the damping of the pair [rpm]; NaN: none is known.
+        """Nearest unstable speed at the damping of the pair [rpm]; NaN: none is known.
 
         Proven; beyond the speeds of the proof a node of the stability chart.
         """
