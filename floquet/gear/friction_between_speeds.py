@@ -19,7 +19,7 @@ from lumped.path_function import PathFunction
 from lumped.path_of_contact.friction import fit_law
 from lumped.typing import BoolArray, FloatArray
 
-#: Ratios of neighbouring speeds between which one reference serves; the narrow ratio where the bound is large.
+#: Ratios of neighbouring speeds between which one reference serves; narrow where the bound is large.
 _WIDE = 1.5
 _MIDDLE = 1.1
 _NARROW = 1.01

@@ -97,7 +97,7 @@ def facts_of(results: Results) -> dict[str, Fact]:
     facts = (
         _contact(results),
         _stable(results),
-        _instability(results),
+        instability(results),
         _jumps(results),
         _left_open(results),
         _resonance(results),
@@ -148,7 +148,7 @@ def _stable(results: Results) -> Fact:
     return Fact("stable", claim, float(stable), "1", _scope(results, teeth="alike"), "predict")
 
 
-def _instability(results: Results) -> Fact:
+def instability(results: Results) -> Fact:
     """Unstable speeds in the stability chart at the damping of the pair."""
     share = float((results.stability_line < 0).mean())
     nearest = results.unstable_rpm

@@ -1,4 +1,4 @@
-"""Are coincident multipliers proven to stay on the unit circle where Krein's signatures say so, and only there?
+"""Are coincident multipliers proven to be on the unit circle where Krein's signatures say so, and only there?
 
 Judges: first-order theory of combination resonances (Krein 1950; Yakubovich and Starzhinskii 1975, chapter
 III; Hsu 1963), and multipliers with 77 digits (Arb) of piecewise constant systems.
