@@ -226,7 +226,7 @@ def verdicts(
 ) -> npt.NDArray[np.int8]:
     """Numbers of `VERDICTS`, any shape: 1 stable, 0 undecided where radius +- error contains 1, -1 unstable.
 
-    2 neutral where all multipliers are proven to be simple and on the unit circle.
+    2 neutral where all multipliers are proven to be on the unit circle and motions bounded.
     """
     decided = np.asarray(radius + error < 1.0, dtype=np.int8)
     decided = decided - np.asarray(radius - error > 1.0, dtype=np.int8)
@@ -245,7 +245,8 @@ class Spectrum:
     certificate : "proven" where the errors are bounds by a theorem, rounding included; "estimate" where they
         rest on samples
     symplectic : whether the coefficients prove that 1/conj(m) is a multiplier with each multiplier m
-    neutral : whether all multipliers are proven to be simple and on the unit circle, `on_unit_circle`
+    neutral : whether all multipliers are proven to be on the unit circle and all motions bounded, by
+        `on_unit_circle` or `definite_signatures`
     """
 
     multipliers: ComplexArray
@@ -275,8 +276,7 @@ class Spectrum:
         """One of `VERDICTS`.
 
         "stable" and "unstable" where ``spectral_radius`` +- ``error`` does not contain 1; "neutral" where all
-        multipliers are proven to be simple and on the unit circle, so that motions without damping stay
-        bounded; else "undecided".
+        multipliers are proven to be on the unit circle and motions without damping stay bounded; else "undecided".
         """
         radius, error = (np.array(value) for value in self._radius)
         return VERDICTS[int(verdicts(radius, error, self.neutral))]

@@ -45,7 +45,7 @@ class NodeSpectra:
     points : (k,) their places in the list of points
     multipliers, errors : (k, n) with bounds, in no order
     proven : whether the errors are proven bounds
-    neutral : (k,) whether all multipliers are proven to be simple and on the unit circle
+    neutral : (k,) whether all multipliers are proven to be on the unit circle and all motions bounded
     """
 
     points: IntArray

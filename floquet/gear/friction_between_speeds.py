@@ -67,7 +67,7 @@ def _one_factor(speeds: FloatArray) -> FloatArray:
 
 
 class FrictionBetweenSpeeds:
-    """The friction law of a variation between any two speeds.
+    """The friction law of a variation between any two speeds; its deviations are PROVEN bounds.
 
     Parameters
     ----------
