@@ -276,7 +276,8 @@ class Spectrum:
         """One of `VERDICTS`.
 
         "stable" and "unstable" where ``spectral_radius`` +- ``error`` does not contain 1; "neutral" where all
-        multipliers are proven to be on the unit circle and motions without damping stay bounded; else "undecided".
+        multipliers are proven to be on the unit circle and motions without damping stay bounded; else
+        "undecided".
         """
         radius, error = (np.array(value) for value in self._radius)
         return VERDICTS[int(verdicts(radius, error, self.neutral))]
