@@ -27,7 +27,7 @@ LIGHT = {
 
 def results_with(proven: StabilityOverSpeed, unstable_nodes=()) -> Results:
     """Results of a pair whose proof and stability chart are given."""
-    results = Results(load_gear_pair("nasa_28_28"), QUICK)
+    results = Results(load_gear_pair("nasa_28_28").at_speed(22.0), QUICK)
     speeds = np.arange(10.0, 61.0, 2.0)
     verdict = np.where(np.isin(speeds, unstable_nodes), -1, 1)[:, None]
     chart = xr.Dataset(
