@@ -33,6 +33,8 @@ from .gear.multipliers import gear_block as gear_block
 from .gear.multipliers import gear_pair_multipliers as gear_pair_multipliers
 from .gear.multipliers import gear_pair_system as gear_pair_system
 from .gear.multipliers import revolution_multipliers as revolution_multipliers
+from .gear.nearest_unstable import StabilityOverSpeed as StabilityOverSpeed
+from .gear.nearest_unstable import nearest_unstable_speed as nearest_unstable_speed
 from .gear.response import ResponseBranches as ResponseBranches
 from .gear.response import response_branches as response_branches
 from .gear.tongues import campbell as campbell

@@ -104,7 +104,7 @@ class ChartPoints:
     ) -> None:
         """Store multipliers (k, size) of points (k,) and bounds on their errors, the ``coupled`` first.
 
-        ``neutral`` (k,): all multipliers are proven to be simple and on the unit circle.
+        ``neutral`` (k,): all multipliers are proven to be on the unit circle, and motions bounded.
         """
         radius, error = radii_with_bounds(values, errors)
         self.radius[points] = radius

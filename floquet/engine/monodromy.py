@@ -14,7 +14,7 @@ from numpy.polynomial.legendre import leggauss
 from floquet.engine.coefficients import PeriodicMatrix
 from floquet.engine.formula_steps import proven_propagation
 from floquet.engine.multipliers import Certificate, Spectrum, multipliers_with_bounds
-from floquet.engine.neutral import on_unit_circle
+from floquet.engine.neutral import definite_signatures, on_unit_circle
 from floquet.engine.propagation import LOOKS, Propagation, error_of_product, propagate
 from floquet.engine.propagators.one_step import Propagator
 from floquet.engine.propagators.registry import propagator
@@ -137,8 +137,11 @@ def _record(
 ) -> Monodromy:
     d = propagation.scaling
     multipliers, bounds = multipliers_with_bounds(balanced, delta)
-    symplectic = certificate == "proven" and system.symplectic
-    circle = on_unit_circle(balanced[None], np.array([delta]), multipliers[None], bounds[None])
+    form = system.kept_form if certificate == "proven" else None
+    neutral = False
+    if form is not None:
+        circle = on_unit_circle(balanced[None], np.array([delta]), multipliers[None], bounds[None])
+        neutral = bool(circle[0]) or definite_signatures(balanced, delta, form.scaled(d))
     return Monodromy(
         multipliers=multipliers,
         multiplier_errors=bounds,
@@ -150,8 +153,8 @@ def _record(
         method=method,
         resolution=0.0 if certificate == "proven" else system.period / LOOKS,
         certificate=certificate,
-        symplectic=symplectic,
-        neutral=symplectic and bool(circle[0]),
+        symplectic=form is not None,
+        neutral=neutral,
     )
 
 

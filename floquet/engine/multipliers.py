@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -24,6 +24,7 @@ _EPS = float(np.finfo(np.float64).eps)
 _U = 0.5 * _EPS
 _SLACK = 1.0 + 1e-9  # rounding of a bound itself
 _FLOOR = 1e-150  # what squares in a norm may lose to underflow
+_LARGEST_NORM = math.sqrt(1.5)  # of the computed unitary factor, see `_triangular_error`
 
 
 def _size(matrix: ComplexArray | FloatArray) -> float:
@@ -71,19 +72,37 @@ def least_separation(first: ComplexArray, second: ComplexArray) -> tuple[float, 
     return (1.0 - q) / _size(W) / _SLACK if q < 1.0 else 0.0, W.astype(complex)
 
 
-def _cluster_bound(
+class Cluster(NamedTuple):
+    """Eigenvalues of a matrix that errors may merge, apart from all its other eigenvalues.
+
+    Attributes
+    ----------
+    members : numbers of the eigenvalues in the Schur form
+    block : (m, m) triangular, its diagonal the computed eigenvalues
+    change : bound on the 2-norm of the change of the block by the errors; inf: the eigenvalues are unknown
+    basis : (n, m) columns that span nearly the invariant subspace
+    tilt : bound on the 2-norm of what ``basis`` lacks of a basis of the exact invariant subspace
+    """
+
+    members: list[int]
+    block: ComplexArray
+    change: float
+    basis: ComplexArray
+    tilt: float
+
+
+def _separated(
     M: FloatArray, T: ComplexArray, Z: ComplexArray, members: list[int], delta: float
-) -> tuple[ComplexArray, float] | None:
-    """Eigenvalues of a cluster and a bound on their errors when M is wrong by delta; None: not separable.
+) -> Cluster | None:
+    """A cluster when M is wrong by delta; None: not separable from the other eigenvalues.
 
     With the cluster first, T = [[B, C], [0, D]]. Let B X - X D ~ -C. Then [[I, X], [0, I]] makes T block
     diagonal but for the residual of this equation. Let e be the error of the triangular form (Frobenius) and
     p^2 = 1 + |X|^2. The diagonal blocks change by at most p e, the off-diagonal blocks by p^2 e and e. Let f
     be the change of the upper off-diagonal block, sep the smallest singular value of X -> B X - X D, and
     s = sep - 2 p e. If 4 e f < s^2, an invariant subspace persists, and the block of the cluster changes by
-    at most p e + 2 e f/s (Stewart and Sun, Matrix Perturbation Theory, theorem V.2.1). Within the block
-    Elsner's theorem gives the m-th root law of a defective multiplier, with B about its mean:
-    |d lambda| <= (2 |B| + e)^(1 - 1/m) e^(1/m).
+    at most p e + 2 e f/s (Stewart and Sun, Matrix Perturbation Theory, theorem V.2.1). The columns
+    Z [I + X P, P] span the subspace, |P| <= 2 e/s: Z_1 but for (Z_1 X + Z_2) P.
     """
     n = T.shape[0]
     m = len(members)
@@ -94,61 +113,86 @@ def _cluster_bound(
         T, Z = ztrsen(select, T, Z, job="N")[:2]
         T = np.triu(T)
     block = T[:m, :m]
+    basis = Z[:, :m]
     error = _triangular_error(M, T, Z, delta)
     if not math.isfinite(error):
         return None
-    change = error
-    if m < n:
-        corner = T[:m, m:]
-        rest = T[m:, m:]
-        sep, W = least_separation(block, rest)
-        if sep == 0.0:
-            return None
-        X = -(W @ corner.T.ravel()).reshape(n - m, m).T
-        remainder = float(np.linalg.norm(block @ X - X @ rest + corner))
-        remainder += _rounding(n, block, X) + _rounding(n, X, rest) + 4.0 * _U * float(np.linalg.norm(corner))
-        p = math.hypot(1.0, float(np.linalg.norm(X))) * _SLACK
-        upper = p * p * error + remainder
-        separation = sep - 2.0 * p * error
-        if not (separation > 0.5 * sep and 4.0 * error * upper < separation * separation):
-            return None
-        change = p * error + 2.0 * error * upper / separation
-    if m == 1:
-        return np.diagonal(block), change * _SLACK
-    departure = _size(block - np.trace(block) / m * np.eye(m))
+    if m == n:
+        return Cluster(members, block, error, basis, 0.0)
+    corner = T[:m, m:]
+    rest = T[m:, m:]
+    sep, W = least_separation(block, rest)
+    if sep == 0.0:
+        return None
+    X = -(W @ corner.T.ravel()).reshape(n - m, m).T
+    remainder = float(np.linalg.norm(block @ X - X @ rest + corner))
+    remainder += _rounding(n, block, X) + _rounding(n, X, rest) + 4.0 * _U * float(np.linalg.norm(corner))
+    p = math.hypot(1.0, float(np.linalg.norm(X))) * _SLACK
+    upper = p * p * error + remainder
+    separation = sep - 2.0 * p * error
+    if not (separation > 0.5 * sep and 4.0 * error * upper < separation * separation):
+        return None
+    turn = 2.0 * error / separation
+    change = p * error + turn * upper
+    return Cluster(members, block, change * _SLACK, basis, _LARGEST_NORM * p * turn * _SLACK)
+
+
+def _eigenvalue_bound(cluster: Cluster) -> float:
+    """Bound on the errors of the eigenvalues of a cluster.
+
+    Elsner's theorem gives the m-th root law of a defective multiplier, with the block B about its mean:
+    |d lambda| <= (2 |B| + e)^(1 - 1/m) e^(1/m).
+    """
+    m = len(cluster.members)
+    change = cluster.change
+    if m == 1 or not math.isfinite(change):
+        return change
+    departure = _size(cluster.block - np.trace(cluster.block) / m * np.eye(m))
     root_law = (2.0 * departure + change) ** (1.0 - 1.0 / m) * change ** (1.0 / m)
-    return np.diagonal(block), float(root_law) * _SLACK
+    return float(root_law) * _SLACK
 
 
-def multipliers_with_bounds(M: FloatArray, delta: float) -> tuple[ComplexArray, FloatArray]:
-    """Eigenvalues (n,) of M, largest modulus first, each with a bound (n,) on its error.
+def clusters_of(M: FloatArray, delta: float) -> list[Cluster]:
+    """Clusters of eigenvalues of M, the smallest that an error of M up to delta (Frobenius) leaves apart.
 
-    PROVEN, rounding included: residuals check the results of LAPACK. ``delta`` bounds the Frobenius norm of
-    the error of M. Multipliers that an error of delta may merge share one bound. Within this bound of each
-    computed multiplier of the group there is an exact one, and within this bound of each exact multiplier of
-    the group there is a computed one. Source: docs/theory/proven_bounds.md, "Multipliers".
+    PROVEN, rounding included: residuals check the results of LAPACK. Source: docs/theory/proven_bounds.md,
+    "Multipliers".
     """
     n = M.shape[0]
     T, Z = schur(M, output="complex")
     T = np.triu(T)
     eigenvalues = np.diagonal(T)
-    clusters = [[i] for i in range(n)]
-    bounds = [_cluster_bound(M, T, Z, members, delta) for members in clusters]
-    while len(clusters) > 1 and None in bounds:
-        bad = bounds.index(None)
-        cluster_values = eigenvalues[clusters[bad]]
+    members = [[i] for i in range(n)]
+    clusters = [_separated(M, T, Z, one, delta) for one in members]
+    while len(members) > 1 and None in clusters:
+        bad = clusters.index(None)
+        cluster_values = eigenvalues[members[bad]]
         distance = [
             math.inf if k == bad else float(np.abs(cluster_values[:, None] - eigenvalues[other]).min())
-            for k, other in enumerate(clusters)
+            for k, other in enumerate(members)
         ]
         nearest = int(np.argmin(distance))
-        clusters[bad] = clusters[bad] + clusters[nearest]
-        bounds[bad] = _cluster_bound(M, T, Z, clusters[bad], delta)
-        del clusters[nearest], bounds[nearest]
+        members[bad] = members[bad] + members[nearest]
+        clusters[bad] = _separated(M, T, Z, members[bad], delta)
+        del members[nearest], clusters[nearest]
+    unknown = Cluster(members[0], T, math.inf, Z, math.inf)
+    return [unknown if cluster is None else cluster for cluster in clusters]
+
+
+def multipliers_with_bounds(M: FloatArray, delta: float) -> tuple[ComplexArray, FloatArray]:
+    """Eigenvalues (n,) of M, largest modulus first, each with a bound (n,) on its error.
+
+    PROVEN, rounding included. ``delta`` bounds the Frobenius norm of the error of M. Multipliers that an
+    error of delta may merge share one bound. Within this bound of each computed multiplier of the group there
+    is an exact one, and within this bound of each exact multiplier of the group there is a computed one.
+    Source: docs/theory/proven_bounds.md, "Multipliers".
+    """
+    n = M.shape[0]
     values = np.empty(n, dtype=complex)
     errors = np.empty(n)
-    for members, bound in zip(clusters, bounds, strict=True):
-        values[members], errors[members] = (eigenvalues[members], math.inf) if bound is None else bound
+    for cluster in clusters_of(M, delta):
+        values[cluster.members] = np.diagonal(cluster.block)
+        errors[cluster.members] = _eigenvalue_bound(cluster)
     # Largest modulus first; a conjugate pair (equal modulus up to rounding) with its positive phase first.
     order = sorted(
         range(n), key=lambda i: (-_significant(float(abs(values[i]))), -values[i].imag, -values[i].real)
@@ -182,7 +226,7 @@ def verdicts(
 ) -> npt.NDArray[np.int8]:
     """Numbers of `VERDICTS`, any shape: 1 stable, 0 undecided where radius +- error contains 1, -1 unstable.
 
-    2 neutral where all multipliers are proven to be simple and on the unit circle.
+    2 neutral where all multipliers are proven to be on the unit circle and motions bounded.
     """
     decided = np.asarray(radius + error < 1.0, dtype=np.int8)
     decided = decided - np.asarray(radius - error > 1.0, dtype=np.int8)
@@ -201,7 +245,8 @@ class Spectrum:
     certificate : "proven" where the errors are bounds by a theorem, rounding included; "estimate" where they
         rest on samples
     symplectic : whether the coefficients prove that 1/conj(m) is a multiplier with each multiplier m
-    neutral : whether all multipliers are proven to be simple and on the unit circle, `on_unit_circle`
+    neutral : whether all multipliers are proven to be on the unit circle and all motions bounded, by
+        `on_unit_circle` or `definite_signatures`
     """
 
     multipliers: ComplexArray
@@ -231,8 +276,8 @@ class Spectrum:
         """One of `VERDICTS`.
 
         "stable" and "unstable" where ``spectral_radius`` +- ``error`` does not contain 1; "neutral" where all
-        multipliers are proven to be simple and on the unit circle, so that motions without damping stay
-        bounded; else "undecided".
+        multipliers are proven to be on the unit circle and motions without damping stay bounded; else
+        "undecided".
         """
         radius, error = (np.array(value) for value in self._radius)
         return VERDICTS[int(verdicts(radius, error, self.neutral))]

@@ -1,4 +1,4 @@
-"""Multipliers of undamped systems: are all of them on the unit circle, and simple?
+"""Multipliers of undamped systems: are all of them on the unit circle, and is every motion bounded?
 
 Sources: docs/theory/floquet.md, "Systems without damping"; proven_bounds.md, "On the unit circle".
 """
@@ -6,13 +6,43 @@ Sources: docs/theory/floquet.md, "Systems without damping"; proven_bounds.md, "O
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
+from floquet.engine.multipliers import Cluster, clusters_of
 from lumped.typing import BoolArray, ComplexArray, FloatArray
 
 _U = 0.5 * float(np.finfo(np.float64).eps)
 _SLACK = 1.0 + 1e-9  # rounding of distances, radii and mirror images
+
+
+class SkewForm(NamedTuple):
+    """A skew form x^T S y that every motion of a system keeps.
+
+    Attributes
+    ----------
+    matrix : (n, n) S, exactly skew
+    errors : (n, n) bounds on the errors of its entries
+    """
+
+    matrix: FloatArray
+    errors: FloatArray
+
+    @classmethod
+    def exact(cls, matrix: FloatArray) -> SkewForm:
+        """A form without errors."""
+        return cls(matrix, np.zeros_like(matrix))
+
+    def scaled(self, scaling: FloatArray) -> SkewForm:
+        """The form in the coordinates x_i/d_i, d (n,) powers of two."""
+        each = np.outer(scaling, scaling)
+        return SkewForm(self.matrix * each, self.errors * each)
+
+    @property
+    def size(self) -> float:
+        """Bound on the 2-norm."""
+        return float(np.linalg.norm(np.abs(self.matrix) + self.errors)) * _SLACK
 
 
 def skew_form(half: int) -> FloatArray:
@@ -45,6 +75,67 @@ def conservative(mass: FloatArray, damping: FloatArray, stiffness: FloatArray) -
     return bool(symmetric and gyroscopic)
 
 
+def form_of_motion(mass: FloatArray, gyroscopic: FloatArray, coordinates: FloatArray) -> SkewForm:
+    """The form x^T G y + x^T M y' - x'^T M y that motions of M x'' + G x' + K(t) x = 0 keep.
+
+    In the states (z, z') with x = T z. Products are rounded: (2 n + 8) u times the product of the moduli.
+
+    Parameters
+    ----------
+    mass, gyroscopic : (n, n) M, symmetric, and G, skew
+    coordinates : (n, n) T
+    """
+    n = mass.shape[0]
+    size = np.abs(coordinates).T @ np.stack([np.abs(mass), np.abs(gyroscopic)]) @ np.abs(coordinates)
+    M, G = coordinates.T @ np.stack([mass, gyroscopic]) @ coordinates
+    bound_M, bound_G = (2.0 * n + 8.0) * _U * size
+    zero = np.zeros((n, n))
+    return SkewForm(
+        np.block([[0.5 * (G - G.T), 0.5 * (M + M.T)], [-0.5 * (M + M.T), zero]]),
+        np.block([[bound_G, bound_M], [bound_M, zero]]),
+    )
+
+
+def definite_signatures(matrix: FloatArray, delta: float, form: SkewForm) -> bool:
+    """Whether all multipliers are on the unit circle and motions bounded: PROVEN by Krein's signatures.
+
+    The exact matrix keeps the Hermitian form x^H (i S) y. On an invariant subspace on which this form is
+    definite, the matrix keeps a length: all multipliers there have modulus 1, and no power grows, though
+    multipliers may coincide. Sources: docs/theory/proven_bounds.md, "On the unit circle"; Krein 1950.
+
+    Parameters
+    ----------
+    matrix : (n, n) computed matrix
+    delta : bound on the Frobenius norm of its error
+    form : the form that the exact matrix keeps
+    """
+    return all(_is_definite(cluster, form) for cluster in clusters_of(matrix, delta))
+
+
+def _is_definite(cluster: Cluster, form: SkewForm) -> bool:
+    """Whether x^H (i S) x has one sign on the exact invariant subspace of a cluster.
+
+    The subspace has the basis Z + D with |D| <= ``tilt``. So the form in this basis is Z^H i S Z but for
+    |S| (2 |Z| |D| + |D|^2), and for the rounding and the error of S.
+    """
+    if not math.isfinite(cluster.tilt):
+        return False
+    Z = cluster.basis
+    n, m = Z.shape
+    K = Z.conj().T @ (1j * form.matrix) @ Z
+    K = 0.5 * (K + K.conj().T)
+    size = float(np.linalg.norm(Z)) * _SLACK
+    error = form.size * (2.0 * size * cluster.tilt + cluster.tilt**2)
+    error += (8.0 * (n + 4.0) * _U * form.size + float(np.linalg.norm(form.errors))) * size**2
+    values, vectors = np.linalg.eigh(K)
+    # Each eigenvalue of K is as near to one of these values as the residuals say (Kahan).
+    q = float(np.linalg.norm(vectors.conj().T @ vectors - np.eye(m))) + 8.0 * (m + 4.0) * m * _U
+    residual = float(np.linalg.norm(K @ vectors - vectors * values))
+    residual += 8.0 * (m + 4.0) * m * _U * float(np.linalg.norm(K))
+    error = (error + residual / math.sqrt(1.0 - q)) * _SLACK if q < 0.5 else math.inf
+    return bool((values > error).all() or (values < -error).all())
+
+
 def separate_from_mirror_images(values: ComplexArray, errors: FloatArray) -> BoolArray:
     """Whether no disk meets another disk or the mirror image of another disk in the unit circle, (k,).
 
@@ -70,6 +161,8 @@ def on_unit_circle(
     matrices: FloatArray, deltas: FloatArray, values: ComplexArray, errors: FloatArray
 ) -> BoolArray:
     """Whether all multipliers are simple and on the unit circle (k,): PROVEN for symplectic matrices.
+
+    Multipliers that coincide, or nearly, are left to `definite_signatures`.
 
     Two states: det M = 1, so that the multipliers are exp(+-i angle), 2 cos(angle) = tr M, where |tr M| < 2.
     The error of the trace is at most sqrt(2) times the Frobenius norm of the error of M. More states: see

@@ -15,7 +15,7 @@ from floquet.engine.formula_steps import Formulas, proven_flows
 from floquet.engine.many_multipliers import quick_multipliers
 from floquet.engine.monodromy import DEAD, checked_effort, monodromy
 from floquet.engine.multipliers import Spectrum, multipliers_with_bounds, radii_with_bounds, verdicts
-from floquet.engine.neutral import on_unit_circle
+from floquet.engine.neutral import definite_signatures, on_unit_circle
 from floquet.engine.sampled_nodes import PeriodicSystems, estimated_multipliers
 from floquet.engine.stacked import alike
 from floquet.engine.system import PeriodicSystem
@@ -45,7 +45,7 @@ class NodeSpectra:
     points : (k,) their places in the list of points
     multipliers, errors : (k, n) with bounds, in no order
     proven : whether the errors are proven bounds
-    neutral : (k,) whether all multipliers are proven to be simple and on the unit circle
+    neutral : (k,) whether all multipliers are proven to be on the unit circle and all motions bounded
     """
 
     points: IntArray
@@ -147,6 +147,11 @@ def _together(numbers: IntArray, systems: Sequence[Formulas], rtol: float) -> No
         bounds = multipliers_with_bounds(flows.matrices[node], float(flows.bounds[node]))
         values[node], errors[node] = bounds
     neutral[careful] = neutral_of(careful)
+    for node in careful[~neutral[careful]]:
+        form = systems[node][0].kept_form
+        if form is not None:
+            scaled = form.scaled(flows.scalings[node])
+            neutral[node] = definite_signatures(flows.matrices[node], float(flows.bounds[node]), scaled)
     return NodeSpectra(numbers, values, errors, True, neutral)
 
 

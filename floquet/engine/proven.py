@@ -20,12 +20,18 @@ sections are those of docs/theory/proven_bounds.md. tests/floquet/engine/test_pr
 | the product of any steps is wrong by at most this | floquet/engine/kernels/steps.py: product_bounds | The product |
 | each disk holds an eigenvalue: quick bound, by eigenvectors | floquet/engine/kernels/eigenvalue_bounds.py: spectra | Multipliers |
 | each disk holds an eigenvalue: careful bound, by the Schur form | floquet/engine/multipliers.py: multipliers_with_bounds | Multipliers |
+| the exact invariant subspace of a cluster is as near as this | floquet/engine/multipliers.py: clusters_of | Multipliers |
 | without damping all multipliers are simple and on the unit circle | floquet/engine/neutral.py: on_unit_circle | On the unit circle |
+| without damping all multipliers are on the unit circle, and motions are bounded though multipliers coincide | floquet/engine/neutral.py: definite_signatures | On the unit circle |
 | motions off the line of action have these multipliers | floquet/gear/multipliers.py: OffLineOfAction | Multipliers |
 | with teeth that differ the rate is wrong by at most this | floquet/gear/multipliers.py: _of_cycles | Teeth that differ |
 | all slower speeds are stable | floquet/rank_one/boxes.py: slow_period | Between the nodes of a chart |
 | the monodromy matrix over a patch of a chart is this polynomial but for this | floquet/rank_one/boxes.py: FlowPolynomial | Between the nodes of a chart |
 | a cell of a chart is stable, or unstable, everywhere in it | floquet/rank_one/boxes.py: decided | Between the nodes of a chart |
+| entries with these ranges have no multiplier on the unit circle | floquet/rank_one/boxes.py: verdicts_by_disks | Between the nodes of a chart |
+| an interval of periods is stable, or unstable, everywhere in it | floquet/rank_one/boxes.py: decided_intervals | The nearest unstable speed |
+| all periods between the first and the nearest unstable one are stable, but for intervals that are listed | floquet/rank_one/period_search.py: proven_periods | The nearest unstable speed |
+| between two speeds mu deviates from a sum with factors by at most this | floquet/gear/friction_between_speeds.py: FrictionBetweenSpeeds | The nearest unstable speed |
 
 A result says which kind of error it has: ``certificate`` is "proven" or "estimate", of charts also "mixed".
 
@@ -35,7 +41,8 @@ NOT proven:
   ``method`` but "auto" and "taylor". A narrow feature may be missed without a warning; see "What remains an
   estimate".
 - Interpolated nodes of a chart, and everything between the nodes, unless ``prove=True`` and the cell says so.
-- Boundaries, tongues, margins and jumps: searches that decide by multipliers at the speeds that they try.
+- Boundaries, tongues, margins and jumps: searches that decide by multipliers at the speeds that they try. Only
+  `nearest_unstable_speed` proves what is between.
 - Motions: orbits, their multipliers, settled runs and attractors (floquet/orbits, and the unilateral motions of
   floquet/gear).
 - With teeth that differ: the distance of the polynomials of the gains from the static state.

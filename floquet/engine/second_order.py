@@ -16,7 +16,7 @@ import numpy.typing as npt
 from scipy.linalg import LinAlgError, cholesky, eigh
 
 from floquet.engine.coefficients import PeriodicMatrix, square
-from floquet.engine.neutral import conservative
+from floquet.engine.neutral import SkewForm, conservative, form_of_motion
 from floquet.engine.system import PeriodicSystem, second_order
 from lumped.arguments import real_array, real_number
 from lumped.errors import NumericalError, refuse
@@ -38,17 +38,24 @@ class SecondOrderSystem(PeriodicSystem):
     ----------
     coordinates : (n, n) T; where M is symmetric and positive definite, the modes of M and the symmetric part
         of the mean of K, with modal mass one
-    conservative : whether M and K(t) are exactly symmetric and C is exactly skew and constant: no motion is
-        damped or driven. False where C or K is a callable
+    form : the skew form that every motion keeps, see `form_of_motion`; None: M, C and K do not prove one
     """
 
     coordinates: FloatArray = field(kw_only=True, repr=False)
-    conservative: bool = field(default=False, kw_only=True)
+    form: SkewForm | None = field(default=None, kw_only=True, repr=False)
 
     @property
-    def symplectic(self) -> bool:
+    def conservative(self) -> bool:
+        """Whether M and K(t) are exactly symmetric and C is exactly skew and constant.
+
+        Then no motion is damped or driven. False where C or K is a callable.
+        """
+        return self.form is not None
+
+    @property
+    def kept_form(self) -> SkewForm | None:
         """See `PeriodicSystem`; proven by M, C and K, because A(t) is rounded."""
-        return self.conservative
+        return self.form
 
 
 def from_second_order(
@@ -102,7 +109,8 @@ def from_second_order(
     if isinstance(damping, PeriodicMatrix) and isinstance(stiffness, PeriodicMatrix):
         A = _known(mass, damping, stiffness, T)
         undamped = conservative(mass, damping.matrices, stiffness.matrices)
-        return SecondOrderSystem(A, period, breakpoints, coordinates=T, conservative=undamped)
+        form = form_of_motion(mass, damping.matrices[0], T) if undamped else None
+        return SecondOrderSystem(A, period, breakpoints, coordinates=T, form=form)
     inverse = np.linalg.inv(mass @ T)
 
     def sampled(times: FloatArray) -> FloatArray:

@@ -14,6 +14,7 @@ from scipy.linalg import matrix_balance
 
 from floquet.engine.callable_form import as_matrices, dimension_of
 from floquet.engine.coefficients import PeriodicMatrix
+from floquet.engine.neutral import SkewForm, skew_form
 from lumped.arguments import real_number, real_numbers
 from lumped.errors import NumericalError, refuse
 from lumped.typing import FloatArray
@@ -106,12 +107,19 @@ class PeriodicSystem:
         object.__setattr__(self, "dimension", dimension)
 
     @property
-    def symplectic(self) -> bool:
-        """Whether the coefficients prove that the motion keeps a skew form, so that M is symplectic.
+    def kept_form(self) -> SkewForm | None:
+        """The skew form that the coefficients prove every motion keeps; None: no such form is known.
 
-        False for a callable A, of which only samples are known.
+        None for a callable A, of which only samples are known.
         """
-        return isinstance(self.A, PeriodicMatrix) and self.A.hamiltonian
+        if isinstance(self.A, PeriodicMatrix) and self.A.hamiltonian:
+            return SkewForm.exact(skew_form(self.dimension // 2))
+        return None
+
+    @property
+    def symplectic(self) -> bool:
+        """Whether the coefficients prove that the motion keeps a skew form, so that M is symplectic."""
+        return self.kept_form is not None
 
     def _call(self, times: FloatArray) -> FloatArray:
         return as_matrices(self.A(times) if self.vectorized else [self.A(float(t)) for t in times])

@@ -278,7 +278,7 @@ class FrictionFamily:
     members: npt.NDArray[np.intp]
     level: float | None
     factors: FloatArray
-    law: _Law | None
+    law: LawOverSpeed | None
 
     def factors_at(self, speeds_rpm: FloatArray) -> FloatArray | None:
         """Factors (k, 1 or 2) at further speeds; None: some of these speeds are not of the family."""
@@ -327,7 +327,7 @@ def friction_families(variation: GearVariation, speeds_rpm: FloatArray) -> list[
             path = contact_path(pair).at_speed(float(rpm) * np.pi / 30.0)
             warn_violations(violations_of(path, pair.friction, pair.friction.law))
         return [FrictionFamily(operating_rpm(pair), rest, None, np.ones((rest.size, 1)), None)]
-    law = _Law.of(variation)
+    law = LawOverSpeed.of(variation)
     families = []
     while rest.size:
         reference = float(speeds_rpm[rest[rest.size // 2]])
@@ -340,7 +340,7 @@ def friction_families(variation: GearVariation, speeds_rpm: FloatArray) -> list[
     return families
 
 
-class _Law:
+class LawOverSpeed:
     """The friction law of a pair at other speeds than the operating speed."""
 
     def __init__(
@@ -362,7 +362,7 @@ class _Law:
         self.at = cache(self._at)
 
     @classmethod
-    def of(cls, variation: GearVariation) -> _Law:
+    def of(cls, variation: GearVariation) -> LawOverSpeed:
         """The law of a variation, over the positions of loaded teeth."""
         settings = variation.pair.friction
         ends = MeshCycle.of(variation.pair).elements.friction.interval
@@ -374,10 +374,10 @@ class _Law:
         law = self.in_force(reference)
         return law is not None and law.coefficient and self.settings.coefficient is None and not self.to_mean
 
-    def law_two(self) -> _Law:
+    def law_two(self) -> LawOverSpeed:
         """Law II from A to D, where its mean is taken."""
         ends = self.path.L_XA, self.path.L_XD
-        return _Law(self.path, ends, self.settings, BENEDICT_KELLEY, to_mean=False)
+        return LawOverSpeed(self.path, ends, self.settings, BENEDICT_KELLEY, to_mean=False)
 
     def shifts_alone(self, reference: float, rpm: float) -> bool:
         """Whether mu at a speed is mu at a reference speed, apart from a factor and a constant."""
@@ -399,11 +399,11 @@ class _Law:
 
     def _values(self, rpm: float) -> tuple[FloatArray, FloatArray]:
         """Mu at the positions, and the positions of the switches of mu, at a speed."""
-        there, settings = self._where_friction_acts(rpm)
+        there, settings = self.where_friction_acts(rpm)
         mu = self.law.signed(self.positions, there, settings)
         return mu, np.sort(self.law.switches(there, settings))
 
-    def _where_friction_acts(self, rpm: float) -> tuple[ContactPath, FrictionSettings]:
+    def where_friction_acts(self, rpm: float) -> tuple[ContactPath, FrictionSettings]:
         """The contact at a speed from the first to the last position of loaded teeth, and settings there."""
         return longer_path(self.at(rpm), self.ends, self.law, self.settings), self.settings
 
@@ -465,7 +465,7 @@ class _Law:
 
     def mean(self, reference: float) -> float:
         """Mean of |mu| where friction acts, as in ``GearVariation.friction_scale``."""
-        return mean_coefficient(fit_law(*self._where_friction_acts(reference), self.law.name))
+        return mean_coefficient(fit_law(*self.where_friction_acts(reference), self.law.name))
 
 
 def _positions(path: ContactPath) -> FloatArray:

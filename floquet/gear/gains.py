@@ -387,6 +387,28 @@ def own_tables(laws: ToothLaws) -> MeshTables:
     return mesh_tables(laws, _LARGEST_STEP, 1, 0.5 - 0.5 * to_series(_NODES)[0])
 
 
+class FrictionReach(NamedTuple):
+    """Bounds on the norm of the gains w and wd of one tooth pair for a unit of |mu|, anywhere on the path."""
+
+    w: float
+    wd: float
+
+
+def friction_reach(system: LTVSystem, metric: FloatArray) -> FrictionReach:
+    """Bounds on the gains of a "mesh" form by the friction of one tooth pair. Norm: as in `Gains`."""
+    cycle = system.cycle
+    root = np.sqrt(metric)
+    arms = [float(np.linalg.norm(arm * root)) for arm in system.per_load[1:]]
+    arm = arms[0] + arms[1] * cycle.end
+
+    def largest(law: PathFunction) -> float:
+        powers = np.arange(len(law.coefficients))[::-1, None]
+        return float((np.abs(law.coefficients) * np.diff(law.breaks) ** powers).sum(axis=0).max())
+
+    load = largest(cycle.elements.stiffness), largest(cycle.elements.damping)
+    return FrictionReach(load[0] * arm * (1.0 + 1e-9), load[1] * arm * (1.0 + 1e-9))
+
+
 class OwnGains:
     """Gains of ``cycles`` mesh cycles from ``first`` on, as `fit_pieces` asks for them.
 

@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from floquet.engine.many_multipliers import FastMultipliers, multipliers_of, quick_multipliers
 from floquet.rank_one.kernel_input import own, packed
-from floquet.rank_one.kernels.gains import Limits, Points, most_steps
+from floquet.rank_one.kernels.gains import Limits, Points, Problem, most_steps
 from floquet.rank_one.kernels.taylor import propagate_points
 from floquet.rank_one.system import RankOneSystem
 from lumped.arguments import real_array, real_number, real_numbers
@@ -28,6 +28,7 @@ _T = TypeVar("_T")
 
 MOST = 20
 """Coordinates at most: the time and the memory of a step grow like their square and more."""
+_FEWEST = 24  # points of a thread: to start one takes as long as some points
 _DIES_OUT = 0.9  # spectral radius below which a motion is far from any boundary
 
 
@@ -53,6 +54,7 @@ def fast_monodromies(
     gain_factors: npt.ArrayLike = 1.0,
     *,
     tolerance: float = 1e-13,
+    problem: Problem | None = None,
 ) -> FastMonodromy:
     """Monodromy matrices for many periods T and factors on wd and on the varied gains.
 
@@ -63,6 +65,7 @@ def fast_monodromies(
     damping_factors : (N,) or scalar, factor on wd
     gain_factors : (N,) or scalar, factor on the gains ``system.varied``, or (N, Q-1), one for each set
     tolerance : largest neglected remainder of one step, in units of the energy norm
+    problem : the same system in the form of the kernels, by `packed`; default made here
 
     Raises
     ------
@@ -82,7 +85,7 @@ def fast_monodromies(
     # Longer steps have fewer terms per unit of time, but amplify rounding, 30 eps = exp(-32.6), by
     # exp(angle): to an eighth of the tolerance.
     limits = Limits(tolerance, min(max(math.log(tolerance) + 30.5, 3.0), 9.0))
-    problem = packed(system)
+    problem = packed(system) if problem is None else problem
     n = 2 * system.v.size
     M = np.empty((T.size, n, n))
     bound = np.empty(T.size)
@@ -164,5 +167,5 @@ def _factors(
 
 def _in_slices(run: Callable[[slice], _T], size: int) -> list[_T]:
     """Results of ``run`` on slices of range(size)."""
-    chunk = max(1, min(512, -(-size // cores())))
+    chunk = max(_FEWEST, min(512, -(-size // cores())))
     return in_threads(run, [slice(first, min(first + chunk, size)) for first in range(0, size, chunk)])

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_left
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import product
 from typing import NamedTuple
@@ -28,8 +28,7 @@ from floquet.rank_one.system import RankOneSystem
 from lumped.typing import ComplexArray, FloatArray, IntArray, Progress
 
 _U = 0.5 * float(np.finfo(np.float64).eps)
-#: Nodes of the polynomial along period and damping, and its terms over a box whose signs count.
-_NODES = (24, 16)
+#: Terms of the polynomial over a box whose signs count, along period and damping.
 _TERMS = (8, 4)
 #: Largest error of the polynomial of a patch; the size of the patch follows.
 _TOLERANCE = 1e-6
@@ -38,6 +37,24 @@ _ANGLE = 0.5  # of half a step in `largest_flow`
 _CELLS = 4  # parts of a piece of the gains whose frozen systems are taken
 _ROWS = 8  # rows of cells for which one Lyapunov function is sought
 _BATCH = 512  # boxes that are decided together
+
+
+class NodeCounts(NamedTuple):
+    """Nodes of the polynomial of a patch along period and along damping."""
+
+    period: int
+    damping: int
+
+
+_NODES = NodeCounts(24, 16)
+
+
+class GainDeviation(NamedTuple):
+    """Bounds on the integrals over the phase of the norm of what w and wd deviate, norm as in `Gains`."""
+
+    w: float
+    wd: float
+
 
 #: Periods (k,) [s] -> factors (k, Q-1) on the varied gains; None: one system does not hold for all periods.
 Factors = Callable[[FloatArray], FloatArray | None]
@@ -60,7 +77,7 @@ def proven_cells(
     problem = packed(system)
     rows = damping.size - 1
     verdict = np.zeros((periods.size - 1, rows), dtype=np.intp)
-    ends = _scaled(np.geomspace(periods[0], periods[-1], _NODES[1]), factors)
+    ends = _scaled(np.geomspace(periods[0], periods[-1], _NODES.damping), factors)
     if ends is None:
         return verdict
     ends = ends[[0, -1]]
@@ -71,16 +88,16 @@ def proven_cells(
     i = 0
     growth = 2.0
     while i < end:
-        size = _Size(problem, growth)
+        size = PatchSize(problem, growth)
 
-        def wide(k: int, i: int = i, size: _Size = size) -> float:
+        def wide(k: int, i: int = i, size: PatchSize = size) -> float:
             return 1e3 * size.error(periods[[i, k]], damping[[0, 0]])
 
         b = _last(i, end, wide)
         c = 0
         while c < rows:
 
-            def tall(k: int, c: int = c, T: FloatArray = periods[[i, b]], size: _Size = size) -> float:
+            def tall(k: int, c: int = c, T: FloatArray = periods[[i, b]], size: PatchSize = size) -> float:
                 return size.error(T, damping[[c, k]])
 
             d = _last(c, rows, tall)
@@ -104,8 +121,15 @@ def _last(first: int, end: int, error: Callable[[int], float]) -> int:
     return max(first, bisect_left(range(first + 1, end + 1), _TOLERANCE, key=error) + first, first + 1)
 
 
-def slow_period(system: RankOneSystem, damping: FloatArray, factors: FloatArray) -> float:
+def slow_period(
+    system: RankOneSystem,
+    damping: FloatArray,
+    factors: FloatArray,
+    deviation: GainDeviation | None = None,
+) -> float:
     """Period from which on a system is stable, PROVEN, for all damping (2,) and factors (2, Q-1) in between.
+
+    With a ``deviation`` for all gains that deviate by no more, wherever in the cycle.
 
     On a cell of the phase |L x| grows at most with the logarithmic norm of L A L^-1, from cell to cell by |L'
     L^-1|; the norm is convex, so that the largest is at a corner. inf: none such, or gyroscopic terms.
@@ -151,7 +175,9 @@ def slow_period(system: RankOneSystem, damping: FloatArray, factors: FloatArray)
         rate += np.linalg.norm(within_cell, axis=1) * row * (1.0 + 1e-9)
     norms = np.array([np.linalg.norm(form.v / form.omega), z * np.linalg.norm(form.v)])
     rate += size * np.repeat(problem.noise + np.tensordot(most, problem.fit_error, 1) @ norms, _CELLS)
-    total = rate @ share + size.max() * (np.tensordot(most, problem.edge_error, 1) @ norms).sum()
+    edges = (np.tensordot(most, problem.edge_error, 1) @ norms).sum()
+    edges += 0.0 if deviation is None else np.array(deviation) @ norms
+    total = rate @ share + size.max() * edges
     jump_norms = np.linalg.norm(np.roll(L, -1, axis=0) @ V, 2, axis=(1, 2)) * (1.0 + rounding)
     return float(np.log(jump_norms).sum() / -total) * (1.0 + 1e-9) if total < 0.0 else math.inf
 
@@ -169,7 +195,7 @@ def _around(poly: FloatArray, middle: FloatArray) -> tuple[FloatArray, FloatArra
     return terms[..., 0], np.abs(terms[..., 1:]).sum(axis=-1)
 
 
-class _Size:
+class PatchSize:
     """Error of the polynomial of a patch as a function of the size of the patch.
 
     Flows within a cycle are at most ``growth`` in the middle of the patch. At complex period and damping they
@@ -179,13 +205,15 @@ class _Size:
     def __init__(self, problem: Problem, growth: float, gains: FloatArray | None = None) -> None:
         self.growth = growth
         shares = np.diff(problem.phases)
-        v_over_omega = np.linalg.norm(problem.v / problem.omega)
+        v_over_omega = float(np.linalg.norm(problem.v / problem.omega))
+        #: Norms by which the feedback of the deflection and of its rate act.
+        self.norms = v_over_omega, float(np.linalg.norm(problem.v))
         rates = (problem.sizes + problem.fit_error).transpose(2, 0, 1) @ shares * (1.0 + 1e-9)
         edges = problem.edge_error.sum(axis=1)
         #: Integrals of the norms of the feedback of each part over the cycle.
         self.each = (
             (rates[0] + edges[:, 0]) * v_over_omega,
-            (rates[1] + edges[:, 1]) * np.linalg.norm(problem.v),
+            (rates[1] + edges[:, 1]) * self.norms[1],
         )
         gains = np.ones(edges.shape[0]) if gains is None else np.abs(gains)
         self.w, self.wd = (float(gains @ part) for part in self.each)
@@ -205,20 +233,47 @@ class _Size:
             half * (self.constant + self.w + z * self.wd) + (T.mean() + half) * by_damping_and_factors
         )
 
-    def error(self, T: FloatArray, damping: FloatArray, factor_change: FloatArray | None = None) -> float:
-        """Bound on the error of the polynomial (Trefethen, theorem 8.2, along each axis)."""
+    def error(
+        self,
+        T: FloatArray,
+        damping: FloatArray,
+        factor_change: FloatArray | None = None,
+        nodes: NodeCounts = _NODES,
+    ) -> float:
+        """Bound on the error of the polynomial (Trefethen, theorem 8.2, along each axis).
+
+        At one value of damping the polynomial is constant along damping, without an error.
+        """
         semi = 0.5 * (_RADII + 1.0 / _RADII)
         one = np.ones_like(_RADII)
         total = 0.0
         factor_change = np.zeros((len(self.each[0]), _RADII.size)) if factor_change is None else factor_change
-        for count, reach, weight in (
-            (_NODES[0], (semi, one, factor_change), 1.0),
-            (_NODES[1], (one, semi, factor_change[:, :1]), 1.0 + 2.0 / math.pi * math.log(_NODES[0])),
-        ):
+        along_period = nodes.period, (semi, one, factor_change), 1.0
+        lebesgue = 1.0 + 2.0 / math.pi * math.log(nodes.period)
+        along_damping = nodes.damping, (one, semi, factor_change[:, :1]), lebesgue
+        one_damping = damping[0] == damping[1]
+        for count, reach, weight in (along_period,) if one_damping else (along_period, along_damping):
             log = self.growth * self.change(T, damping, *reach) - (count - 1.0) * np.log(_RADII)
             log += np.log(4.0 * self.growth * weight / (_RADII - 1.0))
             total += math.exp(min(float(log.min()), 700.0))
         return total * (1.0 + 1e-9)
+
+    def deviation(
+        self, T: FloatArray, damping: FloatArray, factor_change: FloatArray, deviation: GainDeviation
+    ) -> float:
+        """Bound on the change of M everywhere in a patch by gains that deviate, wherever in the cycle.
+
+        Flows within the cycle are at most g = growth exp(growth d) in the patch. Let e be the integral of the
+        norm of the change of T A over the cycle. Then M changes by g (exp(g e) - 1) at most (Gronwall).
+        """
+        one = np.ones(1)
+        d = float(
+            self.change(T, damping, one, one, factor_change[:, :1])[0]
+        )  # the ellipse contains the patch
+        flow = self.growth * math.exp(min(self.growth * d, 700.0))
+        norms = self.norms[0], damping.max() * self.norms[1]
+        e = float(T.max()) * (deviation.w * norms[0] + deviation.wd * norms[1])
+        return float(flow * np.expm1(min(flow * e, 700.0))) * (1.0 + 1e-9)
 
 
 @dataclass(frozen=True, eq=False)
@@ -244,10 +299,24 @@ class FlowPolynomial:
         periods: FloatArray,
         damping: FloatArray,
         factors: Factors,
+        nodes: NodeCounts = _NODES,
+        *,
+        tolerance: float = 1e-10,
+        deviation: GainDeviation | None = None,
     ) -> FlowPolynomial | None:
-        """Between two periods and two values of damping; None: factors of no known law."""
-        x, to_T = to_series(_NODES[0])
-        y, to_z = to_series(_NODES[1])
+        """Between two periods and two values of damping; None: factors of no known law.
+
+        Parameters
+        ----------
+        system, problem : the system, and the same in the form of the kernels
+        periods, damping : (2,) [s] and (2,) ends of the patch
+        factors : on the varied gains
+        nodes : of the polynomial
+        tolerance : of the monodromy matrices at the nodes, see `fast_monodromies`
+        deviation : of the gains that are meant from those of the system and the factors; None: zero
+        """
+        x, to_T = to_series(nodes.period)
+        y, to_z = to_series(nodes.damping)
         T = periods.mean() + 0.5 * np.diff(periods) * x
         z = damping.mean() + 0.5 * np.diff(damping) * y
         t = float(periods.mean())
@@ -260,12 +329,13 @@ class FlowPolynomial:
             np.repeat(T, y.size),
             np.tile(z, x.size),
             np.repeat(factor_values[:-1], y.size, 0),
-            tolerance=1e-10,
+            tolerance=tolerance,
+            problem=problem,
         )
         matrices = flow.matrices.reshape(x.size, y.size, *flow.matrices.shape[1:])
         gains = np.append(1.0, factor_values[-1])
         largest, wrong = largest_flow(problem, Point(own(gains), zeta, t), Limits(1e-12, _ANGLE))
-        size = _Size(problem, math.inf, gains)
+        size = PatchSize(problem, math.inf, gains)
         # Norms grow within a step, half of which has the angle, by the symmetric part of A alone.
         norms = np.array([np.linalg.norm(problem.v / problem.omega), zeta * np.linalg.norm(problem.v)])
         rates = np.tensordot(np.abs(gains), problem.sizes + problem.fit_error, 1) * norms
@@ -275,7 +345,10 @@ class FlowPolynomial:
         )
         if largest * wrong < 0.5:
             size.growth = within * largest / (1.0 - largest * wrong)
-        error = size.error(periods, damping, _factor_change(T / t, factor_values))
+        factor_change = _factor_change(T / t, factor_values)
+        error = size.error(periods, damping, factor_change, nodes)
+        if deviation is not None:
+            error += size.deviation(periods, damping, factor_change, deviation)
         error += (1.0 + 2.0 / math.pi * math.log(x.size)) ** 2 * float(flow.errors.max())  # Lebesgue's
         along_period = (to_T @ matrices.reshape(x.size, -1)).reshape(matrices.shape)
         coefficients = to_z @ along_period.reshape(x.size, y.size, -1)
@@ -403,12 +476,16 @@ class EntryRanges(NamedTuple):
 
 
 def decided(patch: FlowPolynomial, x: FloatArray, y: FloatArray) -> Decision:
-    """PROVEN verdicts of boxes x, y (2, k) of a patch.
+    """PROVEN verdicts of boxes x, y (2, k) of a patch, see `verdicts_by_disks`."""
+    return verdicts_by_disks(bounded_entries(patch, x, y))
 
-    Where margin_k u_k > sum_j f_kj u_j for some u > 0 (Gershgorin's disks, scaled), no multiplier is on the
-    unit circle. The number of multipliers outside is then the number of diagonal entries outside.
+
+def verdicts_by_disks(ranges: EntryRanges) -> Decision:
+    """PROVEN verdicts of boxes by Gershgorin's disks, scaled.
+
+    Where margin_k u_k > sum_j f_kj u_j for some u > 0, no multiplier is on the unit circle. The number of
+    multipliers outside is then the number of diagonal entries outside.
     """
-    ranges = bounded_entries(patch, x, y)
     low = ranges.low
     high = ranges.high
     f = ranges.others
@@ -427,19 +504,15 @@ def decided(patch: FlowPolynomial, x: FloatArray, y: FloatArray) -> Decision:
 
 
 def bounded_entries(patch: FlowPolynomial, x: FloatArray, y: FloatArray) -> EntryRanges:
-    """Ranges of the entries of V^-1 M V over boxes x, y (2, k) of a patch, V the eigenvectors in the middle.
-
-    Over a box the entries are polynomials. The signs of their first ``_TERMS`` terms count; the other terms
-    are added by modulus.
-    """
-    n = patch.coefficients.shape[-1]
+    """Ranges of the entries of V^-1 M V over boxes x, y (2, k) of a patch, see `entry_ranges`."""
+    a, b, n, _ = patch.coefficients.shape
     J, K = _TERMS
-    E = _restricted(x, _NODES[0])
-    F = _restricted(y, _NODES[1])
+    E = _restricted(x, a)
+    F = _restricted(y, b)
     count = x.shape[1]
-    parts = np.swapaxes(E[:, :, :J], 1, 2) @ patch.coefficients.reshape(_NODES[0], -1)
-    parts = np.swapaxes(F[:, None, :, :K], 2, 3) @ parts.reshape(count, J, _NODES[1], -1)
-    parts = parts.reshape(count, J * K, n, n)
+    parts = np.swapaxes(E[:, :, :J], 1, 2) @ patch.coefficients.reshape(a, -1)
+    parts = np.swapaxes(F[:, None, :, :K], 2, 3) @ parts.reshape(count, J, b, -1)
+    parts = parts.reshape(count, J, K, n, n)
     sizes = np.linalg.norm(patch.coefficients, axis=(2, 3))
     x_weights = np.abs(E)
     y_weights = np.abs(F)
@@ -447,12 +520,60 @@ def bounded_entries(patch: FlowPolynomial, x: FloatArray, y: FloatArray) -> Entr
     signed_terms = np.einsum(
         "ka,ab,kb->k", x_weights[:, :, :J].sum(axis=2), sizes, y_weights[:, :, :K].sum(axis=2)
     )
-    # 64 a^2 units: values of T_a at the nodes, sums over a and b, series and their restriction.
     rest = all_terms - signed_terms + patch.error
-    rest += (64.0 * _NODES[0] ** 2 + 32.0 * (n + 8.0)) * _U * (all_terms + sizes.sum())
-    V = np.linalg.eig(parts[:, 0])[1]
+    rest += _restriction_rounding(a, n) * (all_terms + sizes.sum())
+    return entry_ranges(parts, rest)
+
+
+def _restriction_rounding(count: int, n: int) -> float:
+    """Rounding of a series of so many terms and of its restriction to a box, per unit of the moduli.
+
+    64 count^2 units: values of T_a at the nodes, sums over a and b, series and their restriction.
+    """
+    return (64.0 * count**2 + 32.0 * (n + 8.0)) * _U
+
+
+class IntervalBoxes(NamedTuple):
+    """Intervals (k,) of patches of one value of damping.
+
+    Attributes
+    ----------
+    patch : (k,) number of the patch
+    low, high : (k,) ends in the patch, from -1 to 1
+    """
+
+    patch: IntArray
+    low: FloatArray
+    high: FloatArray
+
+
+def decided_intervals(patches: Sequence[FlowPolynomial], boxes: IntervalBoxes) -> IntArray:
+    """PROVEN verdicts (k,) of intervals of patches of one value of damping, as of `decided`."""
+    coefficients = np.stack([patch.coefficients[:, 0] for patch in patches])
+    patch_errors = np.array([patch.error for patch in patches])
+    a, n = coefficients.shape[1:3]
+    J = _TERMS[0]
+    E = _restricted(np.stack([boxes.low, boxes.high]), a)
+    of_box = coefficients[boxes.patch]
+    parts = (np.swapaxes(E[:, :, :J], 1, 2) @ of_box.reshape(-1, a, n * n)).reshape(-1, J, 1, n, n)
+    sizes = np.linalg.norm(of_box, axis=(2, 3))
+    weights = np.abs(E)
+    all_terms = (weights.sum(axis=2) * sizes).sum(axis=1)
+    rest = all_terms - (weights[:, :, :J].sum(axis=2) * sizes).sum(axis=1) + patch_errors[boxes.patch]
+    rest += _restriction_rounding(a, n) * (all_terms + sizes.sum(axis=1))
+    return verdicts_by_disks(entry_ranges(parts, rest)).verdict
+
+
+def entry_ranges(parts: FloatArray, rest: FloatArray) -> EntryRanges:
+    """Ranges of the entries of V^-1 M V over boxes, V the eigenvectors in the middle.
+
+    Over a box M is the polynomial of ``parts`` (k, J, K, n, n), terms T_j(x) T_l(y), but for ``rest`` (k,),
+    a bound on the 2-norm. The signs of the terms of ``parts`` count; ``rest`` is added by modulus.
+    """
+    J, K, n = parts.shape[1:4]
+    V = np.linalg.eig(parts[:, 0, 0])[1]
     Y = np.linalg.inv(V)
-    N = (Y[:, None] @ parts @ V[:, None]).reshape(count, J, K, n, n)
+    N = Y[:, None, None] @ parts @ V[:, None, None]
     reach = np.linalg.norm(Y, axis=2)[:, :, None] * np.linalg.norm(V, axis=1)[:, None, :]
     moduli = np.abs(N)
     entry_error = rest[:, None, None] * reach

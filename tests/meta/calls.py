@@ -142,6 +142,7 @@ COMPUTED = {
     "floquet.gear_block": _of("floquet.gear_block"),
     "floquet.gear_pair_multipliers": _of("floquet.gear_pair_multipliers"),
     "floquet.gear_pair_system": _of("floquet.gear_pair_system"),
+    "floquet.nearest_unstable_speed": _of("floquet.nearest_unstable_speed"),
     "floquet.predicted_lines": _of("floquet.predicted_lines", 2),
     "floquet.revolution_multipliers": _of("floquet.revolution_multipliers"),
     "floquet.stability_boundaries": _of("floquet.stability_boundaries", ENDS, nodes=20, orders=2),

@@ -97,7 +97,7 @@ def facts_of(results: Results) -> dict[str, Fact]:
     facts = (
         _contact(results),
         _stable(results),
-        _instability(results),
+        instability(results),
         _jumps(results),
         _left_open(results),
         _resonance(results),
@@ -148,12 +148,28 @@ def _stable(results: Results) -> Fact:
     return Fact("stable", claim, float(stable), "1", _scope(results, teeth="alike"), "predict")
 
 
-def _instability(results: Results) -> Fact:
+def instability(results: Results) -> Fact:
     """Unstable speeds in the stability chart at the damping of the pair."""
     share = float((results.stability_line < 0).mean())
-    claim = "no speed is unstable" if share == 0.0 else f"{percent(share)} % of the speeds are unstable"
+    nearest = results.unstable_rpm
+    claim = "no speed is unstable" if math.isnan(nearest) else f"{rpm(nearest)} is unstable"
+    if share > 0.0:
+        claim = f"{percent(share)} % of the speeds are unstable"
     scope = _over(results, results.speeds, "linear motion")
     return Fact("unstable_speeds", claim, share, "1", scope, "stability_chart")
+
+
+def proof_words(results: Results) -> str:
+    """Return a clause on the speeds at which the linear motion is proven stable, and on what is left."""
+    proven = results.proven_stability
+    low, high = proven.stable_rpm
+    not_searched = f"unstable zones narrower than {number(results.chart_step, 3)} rpm were not searched"
+    if low == high:
+        return not_searched
+    words = f"the linear motion is proven stable from {number(low, 5)} to {rpm(high)}"
+    if proven.widest_undecided:
+        words += f", but for zones narrower than {number(proven.widest_undecided, 2)} rpm"
+    return words if proven.complete else f"{words}; beyond, {not_searched}"
 
 
 def _jumps(results: Results) -> Fact:

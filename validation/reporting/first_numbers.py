@@ -11,7 +11,7 @@ import numpy as np
 from lumped.outcomes import Absent
 from validation.files.formatting import quantity, span
 from validation.prediction.motion import QUANTITIES, Prediction
-from validation.reporting.facts import Fact, amplified_words, rpm, spread_words
+from validation.reporting.facts import Fact, amplified_words, proof_words, rpm, spread_words
 from validation.reporting.results import Results
 from validation.reporting.verdict import way_out
 
@@ -154,7 +154,8 @@ def _hazard_row(results: Results, fact: Fact) -> Number:
         note = f"{hazard.words} at {rpm(hazard.speed_rpm)}"
     else:
         note = "jumps were not searched to the end" if searched is None else f"none found {fact.scope.speeds}"
-    return Number("hazard", label, distance, "rpm", note=note + results.on_springs, scope=fact.scope.words)
+    note = f"{note}{results.on_springs}; {proof_words(results)}"
+    return Number("hazard", label, distance, "rpm", note=note, scope=fact.scope.words)
 
 
 def first_numbers(prediction: Prediction) -> tuple[Number, ...]:

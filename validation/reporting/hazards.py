@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import xarray as xr
-
 from floquet import GearPairMultipliers
 from floquet.gear.jump_search import JumpSearch
 
@@ -46,14 +44,14 @@ class Hazard:
 
 
 def nearest_of(
-    chart: xr.Dataset, multipliers: GearPairMultipliers, search: JumpSearch, operating_rpm: float
+    unstable_rpm: float, multipliers: GearPairMultipliers, search: JumpSearch, operating_rpm: float
 ) -> Hazard | None:
     """Return the unstable speed, jump, beats or chaos nearest to the operating speed; None: there is none.
 
-    ``chart``: stability over speed; ``multipliers``: of the linear motion at the operating speed.
+    ``unstable_rpm``: the nearest unstable speed [rpm], NaN: none is known; ``multipliers``: of the linear
+    motion at the operating speed.
     """
-    edge = float(chart.attrs["nearest_edge_speed_rpm"])
-    hazards = [] if math.isnan(edge) else [Hazard(edge, "unstable speed")]
+    hazards = [] if math.isnan(unstable_rpm) else [Hazard(unstable_rpm, "unstable speed")]
     if multipliers.verdict == "unstable":
         hazards = [Hazard(operating_rpm, "unstable speed")]
     hazards += [

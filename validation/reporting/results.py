@@ -365,6 +365,31 @@ class Results:
         return floquet.stability_chart(self.pair, axes, supports="springs", progress=progress)
 
     @cached_property
+    def proven_stability(self) -> floquet.StabilityOverSpeed:
+        """What is proven on unstable speeds next to the operating speed, of the linear motion on springs."""
+        self.stage("nearest unstable speed")
+        low, high = self.speeds
+        range_rpm = min(low, self.operating_rpm), max(high, self.operating_rpm)
+        return floquet.nearest_unstable_speed(self.pair, range_rpm, supports="springs")
+
+    @property
+    def chart_step(self) -> float:
+        """Largest distance of neighbouring speeds of the stability chart [rpm]."""
+        return float(np.diff(self.chart["speed_rpm"].to_numpy()).max())
+
+    @property
+    def unstable_rpm(self) -> float:
+        """Nearest unstable speed at the damping of the pair [rpm]; NaN: none is known.
+
+        Proven; beyond the speeds of the proof a node of the stability chart.
+        """
+        proven = self.proven_stability
+        if proven.complete:
+            return proven.unstable_rpm
+        nodes = self.chart["speed_rpm"].to_numpy()[self.stability_line < 0]
+        return float(nodes[np.abs(nodes - self.operating_rpm).argmin()]) if nodes.size else math.nan
+
+    @cached_property
     def orders_over_speed(self) -> xr.Dataset:
         """Amplitudes of the pinion bearing force by mesh order and speed, linear motion on springs."""
         self.stage("orders over speed")
@@ -492,4 +517,4 @@ class Results:
     @property
     def nearest_hazard(self) -> Hazard | None:
         """The unstable speed, jump, beats or chaos nearest to the operating speed; None: there is none."""
-        return nearest_of(self.chart, self.multipliers, self.jump_search, self.operating_rpm)
+        return nearest_of(self.unstable_rpm, self.multipliers, self.jump_search, self.operating_rpm)

@@ -167,12 +167,13 @@ def test_first_order_systems_are_neutral_by_their_matrices() -> None:
     assert not PeriodicSystem(PeriodicMatrix(np.zeros((3, 3))), 2.0).symplectic
 
 
-def test_multiple_multipliers_stay_undecided() -> None:
-    """Two equal oscillators are bounded, x'' = 0 is not: disks that meet do not tell them apart."""
+def test_equal_oscillators_are_neutral_and_a_free_mass_is_not() -> None:
+    """Two equal oscillators are bounded, by signatures; x'' = 0 is not: its multipliers 1 are defective."""
     equal = monodromy(from_second_order(np.eye(2), np.zeros((2, 2)), 2.0 * np.eye(2), 1.0))
     free = monodromy(from_second_order(1.0, 0.0, 0.0, 1.0))
-    assert (equal.verdict, free.verdict) == ("undecided", "undecided")
-    assert equal.verdict_words == free.verdict_words != "undecided"
+    two_free = monodromy(from_second_order(np.eye(2), np.zeros((2, 2)), np.diag([0.0, 2.0]), 1.0))
+    assert (equal.verdict, free.verdict, two_free.verdict) == ("neutral", "undecided", "undecided")
+    assert free.verdict_words == two_free.verdict_words != "undecided"
 
 
 def quadruple(modulus: float, angle: float) -> np.ndarray:

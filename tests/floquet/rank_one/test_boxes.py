@@ -292,7 +292,7 @@ def change_over(system, factors, T, zeta):
     middle = T.mean()
     values = factors(np.append(np.linspace(*T, 9), middle))
     factor_change = boxes._factor_change(np.append(np.linspace(*T, 9), middle) / middle, values)
-    size = boxes._Size(packed(system), 1.7, np.append(1.0, values[-1]))
+    size = boxes.PatchSize(packed(system), 1.7, np.append(1.0, values[-1]))
     semi = 0.5 * (boxes._RADII + 1.0 / boxes._RADII)
     one = np.ones_like(boxes._RADII)
     along = size.change(T, zeta, semi, one, factor_change)
@@ -367,7 +367,7 @@ def test_the_error_of_a_patch_is_that_of_the_theorem() -> None:
     kappa = 1.7
     T = np.array([2.0, 6.0])
     zeta = np.array([0.1, 0.8])
-    size = boxes._Size(packed(system), kappa)
+    size = boxes.PatchSize(packed(system), kappa)
     total = 0.0
     for axis, (nodes, lebesgue) in enumerate(((24, 1.0), (16, 1.0 + 2.0 / np.pi * np.log(24)))):
         best = np.inf

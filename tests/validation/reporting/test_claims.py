@@ -75,6 +75,8 @@ def test_no_speed_is_unstable_over_the_range_that_is_named(results):
     low, high = claim.scope.speeds_rpm
     assert claim.scope.supports == "springs"
     assert claim.claim == "no speed is unstable", "these pairs have none"
+    assert results.proven_stability.stable_rpm == pytest.approx((low, high), rel=1e-9)
+    assert results.proven_stability.widest_undecided == 0.0
     for rpm in np.geomspace(low, high, 14):
         multipliers = floquet.gear_pair_multipliers(pair.at_speed(float(rpm)), supports="springs")
         assert multipliers.verdict != "unstable", rpm
@@ -237,7 +239,8 @@ def test_what_the_budget_left_open_is_said_and_not_claimed():
     )  # fmt: skip
     first = page_one(results)
     row = next(one for one in first.numbers if one.key == "hazard")
-    assert plain(row.note) == "none found from 650 to 7000 rpm"
+    proof = "the linear motion is proven stable from 650 to 13000 rpm"
+    assert plain(row.note) == f"none found from 650 to 7000 rpm; {proof}"
     assert "jumps from 7000 to 9900 rpm were not searched to the end" in plain(first.reason).lower()
     assert first.actions[0].command == "spurcheck response pair.toml --range 7000..9900"
     vars(results)["jump_search"] = type(search)(
@@ -245,4 +248,4 @@ def test_what_the_budget_left_open_is_said_and_not_claimed():
         open=((6000.0, 9900.0),), seconds=5.0,
     )  # fmt: skip
     row = next(one for one in page_one(results).numbers if one.key == "hazard")
-    assert row.note == "jumps were not searched to the end"
+    assert plain(row.note) == f"jumps were not searched to the end; {proof}"

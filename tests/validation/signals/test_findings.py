@@ -193,7 +193,7 @@ def test_page_1_judges_the_teeth_as_given(results) -> None:
     assert load_row.note == f"like teeth {like['tooth_load']:.3g}"
     assert not any(math.isfinite(one.second) for one in first.numbers)  # the second program has like teeth
     hazard = next(one for one in first.numbers if one.key == "hazard")
-    assert hazard.note.endswith(", with like teeth")
+    assert ", with like teeth; the linear motion is proven stable from " in hazard.note
 
 
 def results_table(results):

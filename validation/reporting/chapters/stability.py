@@ -11,6 +11,7 @@ from validation.files.formatting import number
 from validation.plots.stability import stability_figure
 from validation.reporting.blocks import Content, NamedNumber, Picture, Table, named_numbers
 from validation.reporting.chapter import Chapter
+from validation.reporting.facts import proof_words, rpm
 from validation.reporting.results import Results
 
 
@@ -20,11 +21,15 @@ def write(results: Results) -> Content:
     multipliers = results.multipliers
     low, high = (number(speed, 5) for speed in results.speeds)
     share = float(np.mean(results.stability_line < 0))
-    some = "no speed" if share == 0.0 else f"{100 * share:.2g} % of the speeds"
+    some = f"no speed from {low} to {high} rpm is unstable"
+    if share > 0.0:
+        some = f"{100 * share:.2g} % of the speeds from {low} to {high} rpm are unstable"
+    elif not math.isnan(results.unstable_rpm):
+        some = f"{rpm(results.unstable_rpm)} is unstable"
+    proof = proof_words(results)
     result = (
         f"At the operating point the linear motion is {multipliers.verdict_words}; at the given damping "
-        f"{some} from {low} to {high} rpm {'is' if some == 'no speed' else 'are'} unstable"
-        f"{results.on_springs}."
+        f"{some}{results.on_springs}. {proof[0].upper()}{proof[1:]}."
     )
     damping = results.pair.mesh.damping_ratio
     words = (
