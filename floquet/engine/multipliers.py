@@ -8,13 +8,14 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 import numpy.typing as npt
 from scipy.linalg import schur
 from scipy.linalg.lapack import ztrsen
 
+from lumped.display.result import DisplayedResult
 from lumped.typing import BoolArray, ComplexArray, FloatArray
 
 Certificate = Literal["proven", "estimate"]
@@ -189,8 +190,8 @@ def verdicts(
     return np.asarray(np.where(neutral, np.int8(2), decided), dtype=np.int8)
 
 
-@dataclass(frozen=True, eq=False)
-class Spectrum:
+@dataclass(frozen=True, eq=False, repr=False)
+class Spectrum(DisplayedResult):
     """Floquet multipliers of one periodic system.
 
     Attributes
@@ -203,6 +204,8 @@ class Spectrum:
     symplectic : whether the coefficients prove that 1/conj(m) is a multiplier with each multiplier m
     neutral : whether all multipliers are proven to be simple and on the unit circle, `on_unit_circle`
     """
+
+    shown: ClassVar = ("verdict", "spectral_radius", "error", "certificate", "multipliers", "period")
 
     multipliers: ComplexArray
     multiplier_errors: FloatArray

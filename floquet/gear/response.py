@@ -10,7 +10,7 @@ from collections.abc import Collection
 from dataclasses import dataclass, field, fields
 from functools import cached_property
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -42,6 +42,7 @@ from floquet.orbits.long_run import LongRun, Settled
 from floquet.orbits.response import MARGINAL, Branch, Member, Response, lost_stability
 from floquet.orbits.settling import settle
 from lumped.arguments import real_number, whole_number
+from lumped.display.result import DisplayedResult
 from lumped.errors import NumericalError
 from lumped.labelling import Variable, labelled_dataset, provenance
 from lumped.model.averaged import averaged_matrix
@@ -109,8 +110,8 @@ class Jump:
     n_after: int = field(metadata=label("1", "mesh cycles after, 0 where it does not repeat"))
 
 
-@dataclass(frozen=True, eq=False)
-class ResponseBranches:
+@dataclass(frozen=True, eq=False, repr=False)
+class ResponseBranches(DisplayedResult):
     """Periodic motions of a gear pair over speed.
 
     Attributes
@@ -121,6 +122,8 @@ class ResponseBranches:
     response : motions that the search has found, over the period
     member : system, limits and starts of the search
     """
+
+    shown: ClassVar = ("speeds_rpm", "branches", "contact_kept", "bifurcations", "back_side", "open")
 
     pair: GearPair
     speeds_rpm: tuple[float, float]

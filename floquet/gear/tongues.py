@@ -9,7 +9,7 @@ import itertools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -32,6 +32,7 @@ from floquet.gear.multipliers import gear_block
 from floquet.rank_one.batch import fast_monodromies, spectral_radii
 from floquet.rank_one.system import RankOneSystem
 from lumped.arguments import real_number, real_numbers, whole_number
+from lumped.display.result import DisplayedResult
 from lumped.errors import NumericalError, refuse
 from lumped.friction import mean_coefficient
 from lumped.labelling import labelled_dataset, provenance
@@ -345,8 +346,8 @@ def _exponents_by_mode(matrix: FloatArray, omega: FloatArray, period: float) -> 
     return np.asarray(principal + 1j * mesh * np.round((omega - principal.imag) / mesh))
 
 
-@dataclass(frozen=True, eq=False)
-class TongueMargin:
+@dataclass(frozen=True, eq=False, repr=False)
+class TongueMargin(DisplayedResult):
     """One tongue of instability at zero mesh damping, and the mesh damping that closes the tongue.
 
     The bearings have the damping of the pair.
@@ -362,6 +363,8 @@ class TongueMargin:
     damping, left, right : edges of the tongue, left and right [rpm] over the mesh damping ratio, (k,)
     """
 
+    shown: ClassVar = ("label", "lower", "upper", "radius", "critical_damping", "tip_speed")
+
     label: str
     lower: float
     upper: float
@@ -373,13 +376,15 @@ class TongueMargin:
     right: FloatArray
 
 
-@dataclass(frozen=True, eq=False)
-class StabilityMargins:
+@dataclass(frozen=True, eq=False, repr=False)
+class StabilityMargins(DisplayedResult):
     """Distances of the operating point to instability.
 
     Attributes
     ----------
-    pair, rpm, damping : the gear pair, its pinion speed [rpm] and mesh damping ratio
+    pair : the gear pair
+    rpm : its pinion speed [rpm]
+    damping : its mesh damping ratio
     speed_range : range searched [rpm]
     friction_coefficient : constant coefficient in place of the friction law
     tongues : at zero mesh damping, by speed
@@ -388,6 +393,18 @@ class StabilityMargins:
     damping_at_speed : mesh damping ratio above which the operating speed is stable; None: the operating speed
         is stable at any damping
     """
+
+    shown: ClassVar = (
+        "rpm",
+        "damping",
+        "critical_damping",
+        "damping_at_speed",
+        "speed_range",
+        "friction_coefficient",
+        "unstable_here",
+        "tongues",
+        "above",
+    )
 
     pair: GearPair
     rpm: float

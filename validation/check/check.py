@@ -10,11 +10,12 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import Enum
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from lumped.arguments import real_number
+from lumped.display.result import DisplayedResult
 from lumped.errors import NumericalError, refuse
 from lumped.labelling import labelled_dataset
 from lumped.model.averaged import natural_frequencies
@@ -80,8 +81,8 @@ class Rung(Enum):
     OVER_SPEED = "over speed"
 
 
-@dataclass(frozen=True, eq=False)
-class Check:
+@dataclass(frozen=True, eq=False, repr=False)
+class Check(DisplayedResult):
     """Another model of a gear pair beside both programs.
 
     Attributes
@@ -99,6 +100,18 @@ class Check:
     ladder : search for explanations; None: the motion agrees, or no explanations were asked for
     remarks : sentences on the curves: what was assumed, what was not compared
     """
+
+    shown: ClassVar = (
+        "verdict",
+        "misfit",
+        "limit",
+        "failed",
+        "name",
+        "role",
+        "discrepancy",
+        "explanations",
+        "remarks",
+    )
 
     pair: GearPair
     name: str

@@ -260,7 +260,7 @@ def note(text: str) -> None:
 @contextmanager
 def progress_bar(text: str) -> Iterator[Progress]:
     """Show a progress bar on stderr while the block runs. Without a terminal nothing is drawn."""
-    from validation.commands.progress import bar_of_stages
+    from lumped.display.terminal_bar import bar_of_stages
 
     with bar_of_stages(stderr()) as bar:
         task = bar.add_task(text, total=1.0)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import xarray as xr
 
@@ -15,6 +16,7 @@ import multibody
 from floquet.gear.motions import GearOrbit
 from lumped import GearPair
 from lumped.arguments import real_number, some_of, whole_number
+from lumped.display.result import DisplayedResult
 from lumped.errors import SpurcheckError, refuse
 from lumped.model.periodic_system import Supports, on_springs
 from lumped.model.steady import UNSTABLE
@@ -47,8 +49,8 @@ _VARIANT_CYCLES = 2
 _VARIANT_SAMPLES = 64
 
 
-@dataclass(frozen=True, eq=False)
-class CrossCheck:
+@dataclass(frozen=True, eq=False, repr=False)
+class CrossCheck(DisplayedResult):
     """Outcome of ``crosscheck``.
 
     Attributes
@@ -69,6 +71,19 @@ class CrossCheck:
     variant : cross-check of a variation of the pair in which nothing is symmetric; None where the caller does
         not want the variant, or where no variation is sound
     """
+
+    shown: ClassVar = (
+        "verdict",
+        "agrees",
+        "periodic",
+        "agreements",
+        "conservation",
+        "stiffness",
+        "loss",
+        "pulling",
+        "failures",
+        "variant",
+    )
 
     pair: GearPair
     agreements: tuple[Agreement, ...]

@@ -14,11 +14,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from enum import Enum
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 import xarray as xr
 
+from lumped.display.result import DisplayedResult
 from lumped.errors import NumericalError
 from lumped.model.periodic_system import Supports, with_supports
 from lumped.model.results import PlainMotion, peak_to_peak, plain
@@ -29,6 +30,9 @@ from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 from validation.signals.complex_orders import orders_of_period
+
+if TYPE_CHECKING:
+    from validation.signals.orders import Shaft
 
 #: Samples in a mesh cycle of a pair with like teeth.
 _SAMPLES = 512
@@ -55,8 +59,8 @@ class Motion(Enum):
         return self.value
 
 
-@dataclass(frozen=True, eq=False)
-class Prediction:
+@dataclass(frozen=True, eq=False, repr=False)
+class Prediction(DisplayedResult):
     """The predicted motion of a pair at its operating point.
 
     Attributes
@@ -68,9 +72,39 @@ class Prediction:
     stable : whether the motion returns after a small disturbance, by the multipliers of the motion; for
         unlike teeth by the multipliers of the twin with like teeth
     mesh_cycles : mesh cycles in the period of the motion
-    losses : place of ``PLACES`` -> mean power lost there [W]; empty: the motion is not periodic
+    losses : mean power lost at each place of ``PLACES`` [W]; empty: the motion is not periodic
     reason : why the linear motion stands in for the motion with unilateral contact; empty: it does not
     """
+
+    shown: ClassVar = (
+        "motion",
+        "reason",
+        "peak_to_peak",
+        "dynamic_factor",
+        "tooth_load",
+        "least_force",
+        "contact_lost",
+        "efficiency",
+        "loss",
+        "losses",
+        "input_power",
+        "bearing_rms",
+        "bearing_orders",
+        "static_force",
+        "stable",
+        "mesh_cycles",
+    )
+    instead: ClassVar = {
+        "dte": "transmission_error",
+        "save": "write_results(prediction.cycle, 'motion.nc')",
+        "summary": "numbers, or print the prediction",
+        "power_loss": "loss",
+        "force": "mesh_force",
+        "speed": "pair.operating.pinion_speed",
+        "torque": "pair.operating.pinion_torque",
+        "power_balance": "crosscheck(pair).power_balance()",
+        "waterfall": "spurcheck.waterfall(spurcheck.run_up(pair, (500, 3000)))",
+    }
 
     pair: GearPair
     motion: Motion
@@ -155,6 +189,29 @@ class Prediction:
     def orders_of(self, name: str) -> FloatArray:
         """(``ORDERS``,) amplitudes of a variable of ``cycle`` at the mesh orders 1, 2, ..."""
         return mesh_orders(self.plain.values[name], self.mesh_cycles)
+
+    def spectrum(self, shaft: Shaft = "mesh", variable: str = "dte") -> xr.Dataset:
+        """Return the amplitudes of a variable of ``cycle`` over the orders of a shaft, by ``order_spectrum``.
+
+        Parameters
+        ----------
+        shaft : "mesh", "pinion" or "gear"
+        variable : of ``cycle``, over time alone
+
+        Raises
+        ------
+        ParameterError : another shaft, or no variable over time
+        """
+        from validation.signals.orders import order_spectrum
+
+        return order_spectrum(self.cycle, shaft, variable=variable)
+
+    def to_dataset(self) -> xr.Dataset:
+        """Return ``cycle`` with the numbers of ``QUANTITIES`` as variables without dimension."""
+        labels = {name: {"units": unit, "long_name": words} for name, (unit, words) in QUANTITIES.items()}
+        numbers = {name: ((), value, labels[name]) for name, value in self.numbers.items()}
+        attributes = {"motion": self.motion.text, "reason": self.reason}
+        return self.cycle.assign(numbers).assign_attrs(attributes)
 
     @property
     def numbers(self) -> dict[str, float]:

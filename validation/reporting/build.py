@@ -16,6 +16,7 @@ import xarray as xr
 
 from lumped import GearPair, LawRangeWarning, load_gear_pair
 from lumped.arguments import file_path, real_number
+from lumped.display.result import DisplayedResult
 from lumped.errors import refuse
 from lumped.labelling import source_hash
 from lumped.model.periodic_system import Supports, with_supports
@@ -42,8 +43,8 @@ from validation.reporting.results import Results
 from validation.reporting.tables import write_tables
 
 
-@dataclass(frozen=True)
-class Report:
+@dataclass(frozen=True, repr=False)
+class Report(DisplayedResult):
     """A report that was written.
 
     Attributes
