@@ -26,9 +26,10 @@ from floquet.engine.nodes import (
 )
 from floquet.engine.refinement import NodeValues, gaps, search_leaves
 from lumped.arguments import of_type, real_numbers, some_of
+from lumped.display.progress import reported_to, shows_progress
 from lumped.errors import refuse, shown
 from lumped.labelling import Variable, labelled_dataset
-from lumped.typing import BoolArray, ComplexArray, FloatArray, IntArray, Progress
+from lumped.typing import BoolArray, ComplexArray, FloatArray, IntArray, Progress, ProgressRequest
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -205,6 +206,7 @@ def refine_planes(
     points.gaps = None
 
 
+@shows_progress("chart")
 def scan(
     evaluate: Family | BatchedFamily,
     axes: Axes,
@@ -213,7 +215,7 @@ def scan(
     labels: Mapping[str, tuple[str, str]] | None = None,
     refine: bool = False,
     rtol: float = 1e-8,
-    progress: Progress | None = None,
+    progress: ProgressRequest = None,
 ) -> xr.Dataset:
     """Evaluate the multipliers of a family of periodic systems on the product grid of the axes.
 
@@ -228,7 +230,8 @@ def scan(
     refine : whether the chart is evaluated near its edges of instability alone and interpolated elsewhere,
         over its first two axes of more than one value; it then has no multipliers
     rtol : of the monodromy matrix of a `PeriodicSystem`
-    progress : told the finished fraction
+    progress : True (a bar), False (none), None (a bar where the call takes over two seconds), or a function
+        that is called with the finished fraction
 
     Returns
     -------
@@ -240,6 +243,7 @@ def scan(
     NumericalError
         A point fails; the message names it.
     """
+    progress = reported_to(progress)
     grid = checked_axes(axes)
     names = list(grid)
     labels = dict(labels or {})

@@ -42,6 +42,7 @@ from floquet.orbits.long_run import LongRun, Settled
 from floquet.orbits.response import MARGINAL, Branch, Member, Response, lost_stability
 from floquet.orbits.settling import settle
 from lumped.arguments import real_number, whole_number
+from lumped.display.progress import reported_to, shows_progress
 from lumped.display.result import DisplayedResult
 from lumped.errors import NumericalError
 from lumped.labelling import Variable, labelled_dataset, provenance
@@ -51,7 +52,7 @@ from lumped.model.periodic_system import LTVSystem, Supports, on_springs
 from lumped.ranges import warned_once
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
-from lumped.typing import FloatArray, Progress
+from lumped.typing import FloatArray, ProgressRequest
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -333,6 +334,7 @@ class ResponseBranches(DisplayedResult):
         )
 
 
+@shows_progress("response branches")
 @warned_once()
 def response_branches(
     pair: AnyPair,
@@ -343,7 +345,7 @@ def response_branches(
     back_side: bool = False,
     supports: Supports | None = None,
     seconds: float | None = None,
-    progress: Progress | None = None,
+    progress: ProgressRequest = None,
 ) -> ResponseBranches:
     """Branches of periodic motions over speed, stable and unstable, with their bifurcations.
 
@@ -366,12 +368,14 @@ def response_branches(
     supports : "springs": branches are computed on springs alone; needed for a pair with shafts
     seconds : processor time that the search may use [s]; ``ResponseBranches.open`` has the speeds for which
         the time did not suffice; None: no limit
-    progress : called with the finished fraction
+    progress : True (a bar), False (none), None (a bar where the call takes over two seconds), or a function
+        that is called with the finished fraction
 
     Raises
     ------
     ParameterError : speeds that are no range, a time that is not positive, or shafts
     """
+    progress = reported_to(progress)
     pair = on_springs(load_gear_pair(pair), supports, "response_branches")
     low, high = speed_range(pair) if speeds is None else checked_range("speeds", speeds)
     wanted = sorted({whole_number("periods", n, 1, MOST_CYCLES) for n in periods})

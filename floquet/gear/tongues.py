@@ -32,6 +32,7 @@ from floquet.gear.multipliers import gear_block
 from floquet.rank_one.batch import fast_monodromies, spectral_radii
 from floquet.rank_one.system import RankOneSystem
 from lumped.arguments import real_number, real_numbers, whole_number
+from lumped.display.progress import reported_to, shows_progress
 from lumped.display.result import DisplayedResult
 from lumped.errors import NumericalError, refuse
 from lumped.friction import mean_coefficient
@@ -40,7 +41,7 @@ from lumped.model.periodic_system import Supports, on_springs
 from lumped.path_of_contact import friction_path_function
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import LARGEST_SPEED, GearPair
-from lumped.typing import ComplexArray, FloatArray, Progress
+from lumped.typing import ComplexArray, FloatArray, ProgressRequest
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -86,6 +87,7 @@ def predicted_lines(
     }
 
 
+@shows_progress("stability boundaries")
 def stability_boundaries(
     pair: AnyPair,
     speed_rpm: tuple[float, float] = (500.0, 20000.0),
@@ -96,7 +98,7 @@ def stability_boundaries(
     xtol: float = 1e-8,
     rtol: float = 1e-9,
     supports: Supports | None = None,
-    progress: Progress | None = None,
+    progress: ProgressRequest = None,
 ) -> xr.Dataset:
     """Boundaries, spectral radius = 1, of the tongues of instability over speed.
 
@@ -116,7 +118,8 @@ def stability_boundaries(
     rtol : of the monodromy matrices
     supports : "springs", the pair's ``bearings``, or its "shafts", where labels number the modes that count;
         by default the shafts of a pair that has them
-    progress : told the finished fraction
+    progress : True (a bar), False (none), None (a bar where the call takes over two seconds), or a function
+        that is called with the finished fraction
 
     Returns
     -------
@@ -132,6 +135,7 @@ def stability_boundaries(
     ------
     ParameterError : unusable range or axis
     """
+    progress = reported_to(progress)
     base = GearVariation.of(pair, supports)
     low, high = checked_range("speed_rpm", speed_rpm)
     nodes = whole_number("nodes", nodes, 0, 1_000_000)

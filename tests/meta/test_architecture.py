@@ -96,6 +96,7 @@ NO_GEARS = {
         "arguments",
         "cache",
         "compiler",
+        "display.progress",
         "display.result",
         "errors",
         "gauss_legendre",

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from lumped.arguments import real_number
+from lumped.display.progress import reported_to, shows_progress
 from lumped.display.result import DisplayedResult
 from lumped.errors import NumericalError, refuse
 from lumped.labelling import labelled_dataset
@@ -22,6 +23,7 @@ from lumped.model.averaged import natural_frequencies
 from lumped.model.periodic_system import Supports, with_supports
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
+from lumped.typing import ProgressRequest
 from validation.check.curve_orders import drift
 from validation.check.curves import Curves, Role, ValuesOverSpeed
 from validation.check.ladder import Explanation, Ladder, climb
@@ -272,6 +274,7 @@ class Check(DisplayedResult):
         return self.words
 
 
+@shows_progress("check")
 def check(
     pair: AnyPair,
     theirs: Any,
@@ -281,7 +284,7 @@ def check(
     budget: float = BUDGET,
     phase: float | None = None,
     supports: Supports | None = None,
-    progress: Callable[[float], None] | None = None,
+    progress: ProgressRequest = None,
 ) -> Check:
     """Check curves of another model, or a measured record, against both programs.
 
@@ -297,7 +300,8 @@ def check(
     phase : mesh cycles from the moment when pair A was at A to the first sample; default: by correlation
     supports : "springs", the four of ``bearings``, or "shafts", the elastic ones of ``shafts``; by default
         the shafts of a pair that has them
-    progress : told the done share
+    progress : True (a bar), False (none), None (a bar where the call takes over two seconds), or a function
+        that is called with the finished fraction
 
     Returns
     -------
@@ -308,6 +312,7 @@ def check(
     ParameterError : curves that cannot be read or compared; the text says what to change
     NumericalError : no motion of the pair is found
     """
+    progress = reported_to(progress)
     gear_pair = with_supports(load_gear_pair(pair), supports)
     allowed = real_number("limit", limit, 0.0, 1.0, above=True, action="Give a share: 5 % is 0.05.")
     seconds = real_number("budget", budget, 0.0, unit="s")

@@ -179,6 +179,7 @@ def guarded(command: Callable[..., None]) -> Callable[..., None]:
 
     @functools.wraps(command)
     def run(**kwargs: Any) -> None:
+        from lumped.display.progress import without_bars
         from lumped.errors import LawRangeWarning, ParameterError, SpurcheckError
 
         silent = _quiet.set(bool(kwargs.pop("quiet", False)))
@@ -192,7 +193,7 @@ def guarded(command: Callable[..., None]) -> Callable[..., None]:
                 note(text)
 
         try:
-            with warnings.catch_warnings():
+            with warnings.catch_warnings(), without_bars():  # a command draws its bar itself
                 warnings.simplefilter("always", LawRangeWarning)
                 warnings.showwarning = show
                 made = {

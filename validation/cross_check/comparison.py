@@ -16,12 +16,13 @@ import multibody
 from floquet.gear.motions import GearOrbit
 from lumped import GearPair
 from lumped.arguments import real_number, some_of, whole_number
+from lumped.display.progress import reported_to, shows_progress
 from lumped.display.result import DisplayedResult
 from lumped.errors import SpurcheckError, refuse
 from lumped.model.periodic_system import Supports, on_springs
 from lumped.model.steady import UNSTABLE
 from lumped.schema.files import AnyPair, load_gear_pair
-from lumped.typing import Progress
+from lumped.typing import Progress, ProgressRequest
 from multibody.contact.machine import machine
 from validation.cross_check.agreement import FIDELITIES, QUANTITIES, Agreement, Fidelity, agreement
 from validation.cross_check.conservation import conservation, lumped_motion
@@ -137,6 +138,7 @@ class CrossCheck(DisplayedResult):
         return max(self.of(fidelity), key=lambda a: a.difference / a.limit)
 
 
+@shows_progress("cross-check")
 def crosscheck(
     pair: AnyPair,
     *,
@@ -146,7 +148,7 @@ def crosscheck(
     limit: float = LOAD_LIMIT,
     variant: bool = True,
     supports: Supports | None = None,
-    progress: Progress | None = None,
+    progress: ProgressRequest = None,
 ) -> CrossCheck:
     """Compare the lumped model with the multibody model of the same pair in periodic motion.
 
@@ -181,7 +183,8 @@ def crosscheck(
         motions along the line of action agree; for quantities driven by friction the limit is 0.2
     variant : whether to check a variation of the pair in which nothing is symmetric too, with few cycles
     supports : "springs", on which alone both models are compared; needed for a pair with shafts
-    progress : called with the finished fraction
+    progress : True (a bar), False (none), None (a bar where the call takes over two seconds), or a function
+        that is called with the finished fraction
 
     Returns
     -------
@@ -192,6 +195,7 @@ def crosscheck(
     ParameterError : arguments out of range, or shafts
     NumericalError : a model fails; the text says what to try
     """
+    progress = reported_to(progress)
     whole_number("cycles", cycles, 6, 100_000)
     whole_number("samples_per_cycle", samples_per_cycle, 32, 65536)
     limit = real_number("limit", limit, 0.0, 1.0, above=True, action="Give a share: 5 % is 0.05.")

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 import xarray as xr
 
+from lumped.display.progress import shows_progress
 from lumped.display.result import DisplayedResult
 from lumped.errors import NumericalError
 from lumped.model.periodic_system import Supports, with_supports
@@ -28,7 +29,7 @@ from lumped.model.steady import UNSTABLE
 from lumped.model.steady_state import periodic_motion
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
-from lumped.typing import FloatArray
+from lumped.typing import FloatArray, ProgressRequest
 from validation.signals.complex_orders import orders_of_period
 
 if TYPE_CHECKING:
@@ -252,7 +253,10 @@ QUANTITIES = {
 }
 
 
-def predict(pair: AnyPair, *, supports: Supports | None = None) -> Prediction:
+@shows_progress("prediction")
+def predict(
+    pair: AnyPair, *, supports: Supports | None = None, progress: ProgressRequest = None
+) -> Prediction:
     """Return the prediction for a pair at its operating point: the best motion of the program, and its
     numbers.
 
@@ -267,6 +271,8 @@ def predict(pair: AnyPair, *, supports: Supports | None = None) -> Prediction:
     pair : gear pair, preset name or parameter file
     supports : "springs", the four of ``bearings``, or "shafts", the elastic ones of ``shafts``; by default
         the shafts of a pair that has them
+    progress : True (a bar), False (none), None (a bar where the call takes over two seconds), or a function
+        that is called with the finished fraction, here at the end
 
     Returns
     -------
@@ -277,7 +283,10 @@ def predict(pair: AnyPair, *, supports: Supports | None = None) -> Prediction:
     ParameterError : a refused parameter
     NumericalError : no motion was found, or it does not stay bounded
     """
-    return predicted(with_supports(load_gear_pair(pair), supports))
+    result = predicted(with_supports(load_gear_pair(pair), supports))
+    if callable(progress):
+        progress(1.0)
+    return result
 
 
 def dynamic_factor(pair: AnyPair, *, supports: Supports | None = None) -> float:
