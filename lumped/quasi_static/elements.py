@@ -110,7 +110,7 @@ def at_rest(pair: GearPair) -> GearPair:
         "assumed": Assumed(),
         "friction": _FRICTION,
         "mesh": pair.mesh.model_copy(update={"damping_ratio": 0.0}),
-        "operating": pair.operating.model_copy(update={"pinion_speed": _SPEED}),
+        "operating": pair.operating.at_speed(_SPEED),
     }
     return GearPair.model_construct(**fields)
 

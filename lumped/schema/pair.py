@@ -22,7 +22,7 @@ from lumped.errors import FieldProblem, ParameterError, refuse
 from lumped.faults.base import Flank
 from lumped.fields.refusals import field_of, made_of
 from lumped.fields.section import Section, Text
-from lumped.fields.units import Quantity, QuantityRange, SIValue, to_si, to_stated
+from lumped.fields.units import Quantity, to_si, to_stated
 from lumped.friction.base import ContactPath
 from lumped.friction.registry import law_of
 from lumped.friction.table import TABLE
@@ -51,12 +51,10 @@ from lumped.schema.contact import Lubricant, Mesh, without_assumed_defaults
 from lumped.schema.friction import Friction, nominal_contact
 from lumped.schema.gear import BasicRack, Gear
 from lumped.schema.old_formats import FORMAT, upgraded
+from lumped.schema.operating import LARGEST_SPEED as LARGEST_SPEED
+from lumped.schema.operating import OperatingPoint as OperatingPoint
 from lumped.schema.shafts import Shafts
-from lumped.schema.teeth import TorqueRipple
 
-#: Largest speed of a pinion [rpm].
-LARGEST_SPEED = 200000.0
-_RUNNING = "Give the running speed; the pinion drives in its positive sense."
 #: Name that a pair does not have -> what to write.
 _INSTEAD = {
     **dict.fromkeys(("save", "write", "to_file"), "Path(...).write_text(pair.to_toml())"),
@@ -64,31 +62,6 @@ _INSTEAD = {
     "contact_ratio": "pair.geometry.contact_ratio",
     "mesh_frequency": "1 / pair.geometry.mesh_period",
 }
-
-
-class OperatingPoint(Section):
-    """Speeds and torques of the pair. The pinion drives in the positive sense."""
-
-    pinion_speed: Annotated[float, Quantity("rpm", above=0, at_most=LARGEST_SPEED, action=_RUNNING)] = Field(
-        description="nominal speed of the pinion"
-    )
-    pinion_torque: Annotated[float, Quantity("N*m", at_least=1e-9, at_most=1e9)] = Field(
-        description="torque driving the pinion"
-    )
-    brake_torque: Annotated[
-        Literal["balanced"] | float, Quantity("N*m", above=0, at_most=1e9, word="balanced")
-    ] = Field("balanced", description="torque braking the gear, or 'balanced': no drift of the mean speed")
-    speed_range: Annotated[
-        tuple[float, float] | None,
-        QuantityRange("rpm", above=0, at_most=LARGEST_SPEED, action="Give two pinion speeds: 200..3000."),
-    ] = Field(
-        None,
-        description="lowest and highest pinion speed of charts, sweeps and margins; default: from a tenth of "
-        "pinion_speed to twice it",
-    )
-    torque_ripple: tuple[TorqueRipple, ...] = Field(
-        (), max_length=100, description="harmonics of the torques over the turns of the shafts"
-    )
 
 
 #: Problems that a wrong centre distance may cause.
@@ -444,9 +417,8 @@ class GearPair(Section, metaclass=_InOurWords):
 
     def at_speed(self, rpm: float) -> GearPair:
         """The pair at another pinion speed [rpm] within the speed range of the pair, without a new check."""
-        speed = SIValue(to_si(rpm, "rpm"), "rad/s")
         sections = {name: getattr(self, name) for name in GearPair.model_fields}
-        sections["operating"] = self.operating.model_copy(update={"pinion_speed": speed})
+        sections["operating"] = self.operating.at_speed(to_si(rpm, "rpm"))
         sections["assumed"] = self.assumed.without("operating.pinion_speed")
         return GearPair.model_construct(**sections)
 

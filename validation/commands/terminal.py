@@ -108,6 +108,10 @@ class Once(TyperCommand):
             return super().parse_args(ctx, args)
         except Exception as error:
             usage: Any = error  # an error of usage has its text as an attribute
+            if type(error).__name__ == "NoSuchOption":
+                from validation.commands.hints import about_option
+
+                ctx.fail(f"No such option: {usage.option_name}.{about_option(usage.option_name, ctx)}")
             for pattern, words in _PARSER if hasattr(error, "message") else ():
                 usage.message = re.sub(pattern, words, usage.message)
             raise
