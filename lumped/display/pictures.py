@@ -34,7 +34,9 @@ def figure_of(result: object) -> Figure:
     ParameterError : the result has no figure, or no package that draws is imported
     """
     if not _drawing:
-        raise refuse("plot", type(result).__name__, "with the package that draws", "Write import validation.")
+        raise refuse(
+            "plot", type(result).__name__, "a result of import spurcheck", "Write import spurcheck first."
+        )
     return _drawing[0](result)
 
 

@@ -6,11 +6,12 @@ import difflib
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from types import UnionType
 from typing import Annotated, Any, Literal, TypeVar, Union, get_args, get_origin
 
-from pydantic import BaseModel, ValidationError
+from pydantic import BaseModel, TypeAdapter, ValidationError
 from pydantic.fields import FieldInfo
 
 from lumped.arguments import nearest
@@ -32,11 +33,17 @@ def made_of(root: type[Model], data: Mapping[str, Any], source: str, folder: Pat
     Data files named in the data are read relative to ``folder``.
     """
     try:
-        return root.model_validate(data, context={"folder": folder})
+        reader: TypeAdapter[Model] = _reader(root)
+        return reader.validate_python(data, context={"folder": folder})
     except ParameterError as error:
         raise ParameterError(list(error.problems), source) from None
     except ValidationError as error:
         raise ParameterError(translated(error, root), source) from None
+
+
+@cache
+def _reader(root: type[Model]) -> TypeAdapter[Model]:
+    return TypeAdapter(root)
 
 
 def translated(error: ValidationError, root: type[BaseModel]) -> list[FieldProblem]:

@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import html
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property, lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal, NoReturn
 
 from pydantic import BeforeValidator, Field, PlainSerializer, model_validator
 from pydantic.fields import FieldInfo
@@ -59,6 +59,9 @@ from lumped.schema.shafts import Shafts
 _INSTEAD = {
     **dict.fromkeys(("save", "write", "to_file"), "Path(...).write_text(pair.to_toml())"),
     **dict.fromkeys(("to_dict", "as_dict"), "pair.to_mapping()"),
+    **dict.fromkeys(("replace", "update", "set", "change", "vary"), "pair.with_(speed=2000)"),
+    **dict.fromkeys(("plot", "simulate", "run", "predict"), "spurcheck.predict(pair).plot()"),
+    **dict.fromkeys(("report",), "spurcheck.report(pair, 'folder')"),
     "contact_ratio": "pair.geometry.contact_ratio",
     "mesh_frequency": "1 / pair.geometry.mesh_period",
 }
@@ -531,6 +534,32 @@ class GearPair(Section, metaclass=_InOurWords):
 
     def _changed(self, fields: Mapping[str, Any]) -> GearPair:
         return validated(changed(self, fields), f"{self.name} varied")
+
+
+_VARIATION = "Make a variation: pair.with_(speed=2000). A pair does not change and needs no copy."
+_FROM_DATA = "Read a mapping or a file with load_gear_pair(...)."
+#: Method of the schema library that a pair has by inheritance -> what to write instead.
+_OF_THE_LIBRARY = {
+    **dict.fromkeys(("copy", "model_copy", "construct"), _VARIATION),
+    **dict.fromkeys(("dict", "model_dump"), "Plain data: pair.to_mapping()."),
+    **dict.fromkeys(("json", "model_dump_json"), "Text of a file: pair.to_toml()."),
+    **dict.fromkeys(("schema", "schema_json"), "The JSON Schema: lumped.json_schema()."),
+    **dict.fromkeys(("model_validate", "model_validate_json", "model_validate_strings"), _FROM_DATA),
+    **dict.fromkeys(("parse_obj", "parse_raw", "parse_file", "validate", "from_orm"), _FROM_DATA),
+}
+
+
+def _refusing(name: str, action: str) -> Callable[..., NoReturn]:
+    def method(*_: Any, **__: Any) -> NoReturn:
+        raise refuse(f"pair.{name}", "a method of the schema library", "the methods of a pair", action)
+
+    method.__name__ = name
+    method.__doc__ = f"Refuse. {action}"
+    return method
+
+
+for _name, _action in _OF_THE_LIBRARY.items():
+    setattr(GearPair, _name, _refusing(_name, _action))
 
 
 def leaf_paths(pair: GearPair) -> dict[str, Any]:

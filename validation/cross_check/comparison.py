@@ -24,6 +24,7 @@ from lumped.model.steady import UNSTABLE
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import Progress, ProgressRequest
 from multibody.contact.machine import machine
+from multibody.study.balance import PowerBalance
 from validation.cross_check.agreement import FIDELITIES, QUANTITIES, Agreement, Fidelity, agreement
 from validation.cross_check.conservation import conservation, lumped_motion
 from validation.cross_check.losses import LossAgreement, loss_agreement, sliding_agreement
@@ -128,6 +129,23 @@ class CrossCheck(DisplayedResult):
     def agrees(self) -> bool:
         """Whether the multibody model has the motion of the lumped model, within the limits."""
         return self.verdict is Verdict.AGREES
+
+    def attribution(self, *, progress: ProgressRequest = None) -> xr.Dataset:
+        """Return how much each finite-motion effect changes the motion, by ``multibody.attribution``.
+
+        ``progress``: as of ``crosscheck``.
+        """
+        return multibody.attribution(self.pair, supports="springs", progress=progress)
+
+    def power_balance(self, cycles: int = 20, *, fidelity: Fidelity = "exact") -> PowerBalance:
+        """Return the power balance of a run of the multibody model, ``multibody.power_balance``.
+
+        Parameters
+        ----------
+        cycles : mesh cycles of the run
+        fidelity : "exact" or "linear"
+        """
+        return multibody.power_balance(self.pair, cycles, fidelity=fidelity, supports="springs")
 
     def of(self, fidelity: Fidelity) -> tuple[Agreement, ...]:
         """Agreements at one fidelity."""

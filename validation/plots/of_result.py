@@ -66,7 +66,7 @@ def _boundaries(result: xr.Dataset) -> Figure:
 
 def _waterfall(result: xr.Dataset) -> Figure:
     supports = result.attrs.get("supports")
-    return waterfall_figure(result, natural_frequencies(_pair(result), supports=supports))
+    return waterfall_figure(result, natural_frequencies(_pair(result), supports=supports).values.tolist())
 
 
 def _spectrum(result: xr.Dataset) -> Figure:

@@ -140,7 +140,7 @@ def test_the_picture_is_of_the_function_that_was_handed_down(monkeypatch: pytest
         relief.plot()
     monkeypatch.setattr(pictures, "_drawing", [])
     assert "<img" not in SAMPLE._repr_html_()
-    with pytest.raises(ParameterError, match="Write import validation"):
+    with pytest.raises(ParameterError, match="Write import spurcheck first"):
         SAMPLE.plot()
 
 
