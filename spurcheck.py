@@ -116,6 +116,11 @@ _INSTEAD = {
     "averaged_state_space(pair)": "state_space statespace ss transfer_function frf",
     "predict(pair).bearing_rms": "bearing_force bearing_forces",
 }
+#: Argument that a function does not have -> advice.
+_ARGUMENTS = {
+    "model": "The multibody model is spurcheck.multibody.{name}.",
+    "contact": "steady_state, simulate and speed_sweep take contact; a prediction has unilateral contact.",
+}
 _NAMES = (*_SOURCES, *_PACKAGES, "__version__")
 
 
@@ -162,8 +167,8 @@ def _explained(name: str, function: Any) -> Any:
 
     def advice(error: str, named: dict[str, Any]) -> str:
         word = next((key for key in named if key not in signature.parameters), "")
-        if word == "model":
-            return f"The multibody model is spurcheck.multibody.{name}."
+        if word in _ARGUMENTS:
+            return _ARGUMENTS[word].format(name=name)
         if word and (words := _about_argument(name, word, named[word], list(signature.parameters))):
             return words
         missing = re.search(r"missing .*'(\w+)'", error)

@@ -12,7 +12,7 @@ from lumped.arguments import one_of
 from lumped.errors import NumericalError
 from lumped.labelling import provenance
 from lumped.model.equations import X_G, X_P
-from lumped.model.periodic_system import LTVSystem, Supports, supports_of
+from lumped.model.periodic_system import LTVSystem, Supports, on_springs, supports_of
 from lumped.model.supports import Form
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
@@ -35,13 +35,16 @@ def averaged_matrix(system: LTVSystem) -> FloatArray:
     return total / system.period
 
 
-def averaged_state_space(pair: AnyPair, form: Form = "elastic") -> control.StateSpace:
+def averaged_state_space(
+    pair: AnyPair, form: Form = "elastic", *, supports: Supports | None = None
+) -> control.StateSpace:
     """Time-averaged linear model on springs from the torques T_p, T_g to the transmission error, x_p and x_g.
 
     Parameters
     ----------
     pair : gear pair, preset name or parameter file
     form : "elastic" (10 states) or "mesh" (6 states); the rigid rotation is left out
+    supports : "springs"; a pair with shafts must ask for springs
 
     Returns
     -------
@@ -49,13 +52,13 @@ def averaged_state_space(pair: AnyPair, form: Form = "elastic") -> control.State
 
     Raises
     ------
-    ParameterError : form "full", whose rigid rotation has no frequency response at rest
+    ParameterError : form "full", whose rigid rotation has no frequency response at rest, or shafts
 
     Sources: docs/theory/equations.md, the state matrix averaged over one mesh cycle.
     """
     import control  # takes longer to import than all else of lumped; modes do without
 
-    pair = load_gear_pair(pair)
+    pair = on_springs(load_gear_pair(pair), supports, "averaged_state_space")
     one_of("form", form, ("elastic", "mesh"), "The rigid rotation has no steady response.")
     system = LTVSystem.of(pair, form, supports="springs")
     m = len(system.coordinates)
