@@ -14,6 +14,7 @@ from typing import ClassVar
 import numpy as np
 from scipy.optimize import brentq
 
+from lumped.display.result import DisplayedResult
 from lumped.path_function import PathFunction
 from lumped.schema.assumed import Assumed
 from lumped.schema.friction import Friction
@@ -27,8 +28,8 @@ _FRICTION = Friction.model_construct(law="none")
 _SAMPLES = 500
 
 
-@dataclass(frozen=True, eq=False)
-class MeshElements:
+@dataclass(frozen=True, eq=False, repr=False)
+class MeshElements(DisplayedResult):
     """Element laws of one tooth pair over the interval of xi in which it can touch; zero outside.
 
     The interval is [L_XA, L_XD] with prescribed contact, and longer with loaded contact.
