@@ -207,8 +207,6 @@ def shows_progress(words: str, *, counts: bool = False) -> Callable[[Callable[P,
             is_drawn = request is True or (request is None and not _inside.get() and _watched())
             with without_bars():
                 if not is_drawn:
-                    if isinstance(request, bool):
-                        kwargs["progress"] = None
                     return function(*args, **kwargs)
                 with DelayedBar(bar_for(words), 0.0 if request else DELAY) as tell:
                     kwargs["progress"] = _of_counts(tell) if counts else tell
@@ -232,6 +230,6 @@ def _of_counts(tell: Progress) -> Callable[[int, int, int], None]:
 def reported_to(progress: ProgressRequest) -> Progress | None:
     """Return the function to call with the finished fraction; None: nobody asks.
 
-    ``shows_progress`` has replaced True and False before.
+    ``shows_progress`` has replaced True before.
     """
     return progress if callable(progress) else None
