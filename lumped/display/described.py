@@ -65,7 +65,7 @@ def _parsed(text: str, place: int = 0, places: int = 1) -> Description:
     """Words and unit of one entry. Of ``places`` names with as many phrases, each name has its phrase."""
     joined = _SHAPE.sub("", " ".join(text.split()).replace("`", ""))
     unit = _UNIT.search(joined)
-    words = _UNIT.sub("", joined, count=1).split(";")[0].strip().rstrip(".")
+    words = _UNIT.sub("", joined, count=1).split(";")[0].rstrip("., ").strip()
     phrases = [phrase.strip().removeprefix("and ") for phrase in words.split(",")]
     if places > 1 and len(phrases) == places:
         words = phrases[place]
