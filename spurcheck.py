@@ -3,18 +3,20 @@
     import spurcheck
 
     pair = spurcheck.new_pair("19/41", module=2.5, face_width=20, speed=1450, torque=80)
-    found = spurcheck.predict(pair)
-    found.dynamic_factor, found.efficiency
-    spurcheck.plot(found.cycle).savefig("motion.png")
+    prediction = spurcheck.predict(pair)
+    prediction.dynamic_factor, prediction.efficiency
+    prediction.plot().savefig("motion.png")
 
 Pairs      new_pair, load_gear_pair, preset_names, gear_pair_from_rexs; pair.with_(speed=2000) varies one
 Motion     predict, dynamic_factor: teeth only push; steady_state, simulate, run_up, speed_sweep, with
            contact="linear", the default, or "unilateral"; response_branches, periodic_orbit
 Gears      geometry, mesh_stiffness, natural_frequencies, static_transmission_error, optimal_relief, bodies
-Trust      report, uncertainty, compare, crosscheck, validity_flags, attribution, power_balance
+Trust      report, uncertainty, compare, validity_flags; crosscheck, whose result has attribution() and
+           power_balance()
 Your model check: curves of another model, or a record, beside both programs; reference, reference_names
 Stability  stability_chart, stability_margins, stability_boundaries, campbell
-Any system PeriodicSystem, periodic_system, from_second_order, monodromy
+Any system PeriodicSystem, periodic_system, from_second_order, monodromy; averaged_state_space, the pair
+           as a StateSpace of python-control
 Signals    order_spectrum, waterfall, time_synchronous_average; more in spurcheck.validation.signals
 Studies    load_study, run_sweep, read_results
 Files      plot, write_results, write_rexs, write_interactive_page
@@ -56,6 +58,7 @@ if TYPE_CHECKING:  # the one list of the public names; below it is read at run t
     from lumped import NumericalError as NumericalError
     from lumped import ParameterError as ParameterError
     from lumped import SpurcheckError as SpurcheckError
+    from lumped import averaged_state_space as averaged_state_space
     from lumped import bodies as bodies
     from lumped import geometry as geometry
     from lumped import load_gear_pair as load_gear_pair
@@ -69,8 +72,6 @@ if TYPE_CHECKING:  # the one list of the public names; below it is read at run t
     from lumped import speed_sweep as speed_sweep
     from lumped import static_transmission_error as static_transmission_error
     from lumped import steady_state as steady_state
-    from multibody import attribution as attribution
-    from multibody import power_balance as power_balance
     from validation import compare as compare
     from validation import crosscheck as crosscheck
     from validation import dynamic_factor as dynamic_factor
@@ -110,9 +111,31 @@ _INSTEAD = {
     "floquet.gear_pair_multipliers(pair).verdict": "is_stable stable",
     "order_spectrum(motion)": "fft spectrum",
     "preset_names()": "presets list_presets",
+    "crosscheck(pair).attribution()": "attribution causes",
+    "crosscheck(pair).power_balance()": "power_balance energy_balance energy",
+    "averaged_state_space(pair)": "state_space statespace ss transfer_function frf",
+    "predict(pair).bearing_rms": "bearing_force bearing_forces",
+}
+#: Argument that a function does not have -> advice.
+_ARGUMENTS = {
+    "model": "The multibody model is spurcheck.multibody.{name}.",
+    "contact": "steady_state, simulate and speed_sweep take contact; a prediction has unilateral contact.",
 }
 _NAMES = (*_SOURCES, *_PACKAGES, "__version__")
-globals()["__all__"] = []  # help() would print all that it names, 1,500 lines; a checker would hide the names
+
+
+class _PublicNames(list[str]):
+    """Names for ``from spurcheck import *``, which takes the items of ``__all__``.
+
+    ``help(spurcheck)`` asks whether a name is in ``__all__`` and prints everything that is, 1,500 lines. Here
+    no name is.
+    """
+
+    def __contains__(self, name: object) -> bool:
+        return False
+
+
+globals()["__all__"] = _PublicNames((*_SOURCES, *_PACKAGES))  # a plain list would hide names from a checker
 
 
 def _find(name: str) -> object:
@@ -121,6 +144,7 @@ def _find(name: str) -> object:
     if name in _PACKAGES:
         return import_module(name)
     value = getattr(import_module(_SOURCES[name]), name)
+    import_module("validation.plots").hand_down()  # results draw themselves from now on
     return _explained(name, value) if isinstance(value, FunctionType) else value
 
 
@@ -142,13 +166,11 @@ def _explained(name: str, function: Any) -> Any:
         return function(*arguments, **named)
 
     def advice(error: str, named: dict[str, Any]) -> str:
-        from lumped.schema.changes import SHORT_NAMES
-
         word = next((key for key in named if key not in signature.parameters), "")
-        if "pair" in signature.parameters and (word in SHORT_NAMES or "__" in word):
-            return f"Vary the pair: spurcheck.{name}(pair.with_({word}=...))."
-        if word == "model":
-            return f"The multibody model is spurcheck.multibody.{name}."
+        if word in _ARGUMENTS:
+            return _ARGUMENTS[word].format(name=name)
+        if word and (words := _about_argument(name, word, named[word], list(signature.parameters))):
+            return words
         missing = re.search(r"missing .*'(\w+)'", error)
         meaning = missing and re.search(rf"^ *({missing[1]} : .*)", inspect.getdoc(function) or "", re.M)
         takes = f"It takes {', '.join(signature.parameters)}"
@@ -158,6 +180,44 @@ def _explained(name: str, function: Any) -> Any:
     call.__module__ = __name__
     call.__qualname__ = name
     return call
+
+
+def _about_argument(name: str, word: str, value: object, parameters: list[str]) -> str:
+    """Advice on an argument that a function does not have; empty: there is none.
+
+    Parameters
+    ----------
+    name : the function
+    word : the argument
+    value : its value
+    parameters : arguments that the function has
+    """
+    import difflib
+
+    from lumped.fields.hints import hint_of
+    from lumped.schema.changes import SHORT_NAMES
+
+    several = not isinstance(value, str) and hasattr(value, "__len__")
+    plural = [one for one in parameters if one in (f"{word}s", f"{word}s_rpm")]
+    near = plural or difflib.get_close_matches(word, [one for one in parameters if one != "pair"], 1, 0.8)
+    if "axes" in parameters and (several or not near) and (axis := _axis_for(word)):
+        return f"Give an axis: spurcheck.{name}(pair, axes={{{axis!r}: [...]}})."
+    if near:
+        return f"The argument is {near[0]}: spurcheck.{name}(pair, {near[0]}=...)."
+    if "pair" in parameters and (word in SHORT_NAMES or "__" in word):
+        return f"Vary the pair: spurcheck.{name}(pair.with_({word}=...))."
+    hint = hint_of(word)
+    if "pair" in parameters and hint is not None:
+        return f"Vary the pair: spurcheck.{name}(pair.with_({hint.arguments}))."
+    return ""
+
+
+def _axis_for(word: str) -> str:
+    """The axis of a chart for a word; empty: there is none."""
+    from floquet import GEAR_AXES
+
+    starts = [axis for axis in GEAR_AXES if axis == word or axis.startswith(f"{word}_")]
+    return starts[0] if starts else {"mu": "friction_coefficient", "zeta": "damping_ratio"}.get(word, "")
 
 
 def _nearest(name: str) -> str:

@@ -23,7 +23,7 @@ def compute() -> xr.Dataset:
 
 def draw(result: xr.Dataset) -> Figure:
     """Waterfall with the natural frequencies."""
-    return waterfall_figure(result, spurcheck.natural_frequencies(PAIR))
+    return waterfall_figure(result, spurcheck.natural_frequencies(PAIR).to_numpy())
 
 
 if __name__ == "__main__":

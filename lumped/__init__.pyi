@@ -5,6 +5,7 @@ from .errors import NumericalError as NumericalError
 from .errors import ParameterError as ParameterError
 from .errors import SpurcheckError as SpurcheckError
 from .gear_geometry.geometry import Geometry as Geometry
+from .model.averaged import averaged_state_space as averaged_state_space
 from .model.averaged import natural_frequencies as natural_frequencies
 from .model.mesh_cycle import MeshCycle as MeshCycle
 from .model.mesh_cycle import mesh_cycle as mesh_cycle

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.polynomial import chebyshev, polynomial
 from numpy.typing import ArrayLike, NDArray
 
+from lumped.display.result import DisplayedResult
 from lumped.errors import NumericalError
 from lumped.typing import FloatArray
 
@@ -58,8 +59,8 @@ for _k in range(FIT_DEGREE + 1):
     ).coef
 
 
-@dataclass(frozen=True, eq=False)
-class PathFunction:
+@dataclass(frozen=True, eq=False, repr=False)
+class PathFunction(DisplayedResult):
     """Piecewise polynomial f(xi) on [breaks[0], breaks[-1]], zero outside.
 
     Attributes

@@ -18,3 +18,7 @@ class Progress(Protocol):
 
     def __call__(self, fraction: float, stage: str = "", /) -> None:
         """Take the finished fraction, 0 to 1, and the words for what is being done."""
+
+
+#: Argument ``progress`` of public functions, see ``lumped.display.progress``.
+ProgressRequest = Progress | bool | None

@@ -3,6 +3,17 @@
 Names are imported on first use, so that ``spurcheck --help`` answers at once; ``__init__.pyi`` lists them.
 """
 
+from __future__ import annotations
+
 import lazy_loader
 
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+_of_stub, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+
+
+def __getattr__(name: str) -> object:
+    value = _of_stub(name)
+    if name in __all__:
+        from validation.plots import hand_down
+
+        hand_down()  # results draw themselves from now on
+    return value

@@ -18,6 +18,7 @@ from validation.commands.any_system import floquet
 from validation.commands.check import check
 from validation.commands.compare import compare
 from validation.commands.files import export, init, presets
+from validation.commands.hints import COMMANDS as COMMAND_HINTS
 from validation.commands.motion import interactive, simulate, teeth, uncertainty
 from validation.commands.reference import reference
 from validation.commands.report import crosscheck, report
@@ -27,39 +28,19 @@ from validation.commands.sweep import sweep
 from validation.commands.terminal import NUMERICAL, Once, unprinted
 from validation.stop_signals import interrupt_once
 
-#: What to type instead of an option that no command has.
-_OPTIONS = {
-    **dict.fromkeys(("--rpm", "-n"), "--speed 1450 (rpm), or --speed '24 Hz'"),
-    "--power": "--torque, the power over the speed: 9550 N m rpm/kW",
-    "--pair": "the gear pair without an option, as in spurcheck report my_pair.toml",
-    "-help": "--help",
-}
-#: What to type instead of a word that is no command.
-_INSTEAD = {
-    "help": "spurcheck --help",
-    "version": "spurcheck --version",
-    "measurement": "spurcheck report PAIR --record FILE",
-    "jumps": "spurcheck response",
-    "gui": "spurcheck interactive",
-    **dict.fromkeys(("new", "create"), "spurcheck init"),
-    **dict.fromkeys(("run", "plot", "figures"), "spurcheck report"),
-    **dict.fromkeys(("verify", "validate"), "spurcheck check"),
-}
-
 
 class Commands(TyperGroup):
     """Group of all commands. An unknown command or option is refused with the command to type instead."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         """Parse a line, its command and options included."""
-        for word in args:
-            if (name := word.partition("=")[0]) in _OPTIONS:
-                ctx.fail(f"No such option: {name}. Type: {_OPTIONS[name]}")
+        if "-help" in args:  # the parser would read -h -e -l -p
+            ctx.fail("No such option: -help. Type: --help")
         return super().parse_args(ctx, args)
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         """Return the command of a line."""
-        line = f"spurcheck report {args[0]}" if args[0].endswith(".toml") else _INSTEAD.get(args[0])
+        line = f"spurcheck report {args[0]}" if args[0].endswith(".toml") else COMMAND_HINTS.get(args[0])
         return (
             ctx.fail(f"No such command '{args[0]}'. Type: {line}")
             if line

@@ -17,9 +17,10 @@ from floquet.engine.node_workers import GridNodes, results_of
 from floquet.engine.nodes import BatchedFamily, Family, refuse_other_sizes
 from floquet.engine.refinement import NodeValues, gaps, search_leaves
 from lumped.arguments import of_type, one_of, real_numbers, some_of, whole_number
+from lumped.display.progress import reported_to, shows_progress
 from lumped.errors import refuse, shown
 from lumped.labelling import Variable, labelled_dataset
-from lumped.typing import BoolArray, ComplexArray, FloatArray, IntArray, Progress
+from lumped.typing import BoolArray, ComplexArray, FloatArray, IntArray, Progress, ProgressRequest
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -196,6 +197,7 @@ def refine_planes(
     points.gaps = None
 
 
+@shows_progress("chart")
 def scan(
     evaluate: Family | BatchedFamily,
     axes: Axes,
@@ -206,7 +208,7 @@ def scan(
     store: Literal["all", "radius"] = "all",
     rtol: float = 1e-8,
     workers: int = 1,
-    progress: Progress | None = None,
+    progress: ProgressRequest = None,
 ) -> xr.Dataset:
     """Evaluate the multipliers of a family of periodic systems on the product grid of the axes.
 
@@ -224,7 +226,8 @@ def scan(
     rtol : of the monodromy matrix of a `PeriodicSystem`
     workers : processes that evaluate nodes; the chart is the same to the last bit. With more than one, other
         processes must be able to import ``evaluate``: a function at the head of a module
-    progress : told the finished fraction
+    progress : True (a bar), False (none), None (a bar where the call takes over two seconds), or a function
+        that is called with the finished fraction
 
     Returns
     -------
@@ -236,6 +239,7 @@ def scan(
     NumericalError
         A point fails; the message names it.
     """
+    progress = reported_to(progress)
     grid = checked_axes(axes)
     labels = dict(labels or {})
     some_of("labels", labels, grid)

@@ -27,7 +27,7 @@ DEAD = 1e-150
 """Where |M| is below this, the tolerance is no longer relative: such a system is dead after one period."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Monodromy(Spectrum):
     """The result of `monodromy`; multipliers, exponents, radius, error and verdict are those of `Spectrum`.
 

@@ -8,13 +8,14 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Literal, NamedTuple
+from typing import ClassVar, Literal, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 from scipy.linalg import schur
 from scipy.linalg.lapack import ztrsen
 
+from lumped.display.result import DisplayedResult
 from lumped.typing import BoolArray, ComplexArray, FloatArray
 
 Certificate = Literal["proven", "estimate"]
@@ -233,8 +234,8 @@ def verdicts(
     return np.asarray(np.where(neutral, np.int8(2), decided), dtype=np.int8)
 
 
-@dataclass(frozen=True, eq=False)
-class Spectrum:
+@dataclass(frozen=True, eq=False, repr=False)
+class Spectrum(DisplayedResult):
     """Floquet multipliers of one periodic system.
 
     Attributes
@@ -248,6 +249,8 @@ class Spectrum:
     neutral : whether all multipliers are proven to be on the unit circle and all motions bounded, by
         `on_unit_circle` or `definite_signatures`
     """
+
+    shown: ClassVar = ("verdict", "spectral_radius", "error", "certificate", "multipliers", "period")
 
     multipliers: ComplexArray
     multiplier_errors: FloatArray

@@ -43,11 +43,12 @@ from floquet.rank_one.batch import fast_monodromies, fast_multipliers
 from floquet.rank_one.boxes import proven_cells
 from floquet.rank_one.system import RankOneSystem
 from lumped.arguments import of_type, one_of, real_number
+from lumped.display.progress import reported_to, shows_progress
 from lumped.errors import LawRangeWarning, refuse
 from lumped.labelling import Variable, labelled_dataset, provenance
 from lumped.model.periodic_system import Supports
 from lumped.schema.files import AnyPair, load_gear_pair
-from lumped.typing import FloatArray, IntArray, Progress
+from lumped.typing import FloatArray, IntArray, Progress, ProgressRequest
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -61,6 +62,7 @@ _COUNTED = 1_000_000  # nodes that are counted at once
 _NAMED = 200  # largest number of regions that are named
 
 
+@shows_progress("stability chart")
 def stability_chart(
     pair: AnyPair | GearVariation,
     axes: Axes | None = None,
@@ -71,7 +73,7 @@ def stability_chart(
     rtol: float = 1e-10,
     store: Literal["all", "radius"] = "radius",
     supports: Supports | None = None,
-    progress: Progress | None = None,
+    progress: ProgressRequest = None,
 ) -> xr.Dataset:
     """Stability chart of a gear pair, of its linear form with like teeth.
 
@@ -100,7 +102,8 @@ def stability_chart(
         point instead of 19
     supports : "springs", the pair's ``bearings``, or its "shafts" with the modes that count most; by default
         the shafts of a pair that has them
-    progress : told the finished fraction
+    progress : True (a bar), False (none), None (a bar where the call takes over two seconds), or a function
+        that is called with the finished fraction
 
     Returns
     -------
@@ -123,6 +126,7 @@ def stability_chart(
     NumericalError
         A point fails; the message names it.
     """
+    progress = reported_to(progress)
     variation = GearVariation.of(pair, supports)
     grid = gear_grid(chart_axes(variation.pair) if axes is None else axes, variation.supports)
     points = math.prod(values.size for values in grid.values())

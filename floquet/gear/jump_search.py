@@ -20,12 +20,13 @@ from floquet.orbits.deadline import Deadline
 from floquet.orbits.orbit import Orbit, state_scale
 from floquet.orbits.response import Member, Response
 from lumped.arguments import real_number, whole_number
+from lumped.display.progress import reported_to, shows_progress
 from lumped.errors import refuse
 from lumped.model.periodic_system import Supports, on_springs
 from lumped.ranges import warned_once
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import LARGEST_SPEED, GearPair
-from lumped.typing import Progress
+from lumped.typing import ProgressRequest
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -141,6 +142,7 @@ def contact_loss_windows(sweep: xr.Dataset, speeds: Range) -> tuple[Range, ...]:
     return merged([(float(x[j]), float(x[j + 1])) for j in map(int, np.flatnonzero(lost))], (low, high))
 
 
+@shows_progress("search for jumps")
 @warned_once()
 def search_jumps(
     pair: AnyPair,
@@ -152,7 +154,7 @@ def search_jumps(
     speeds: Range | None = None,
     first: float | None = None,
     supports: Supports | None = None,
-    progress: Progress | None = None,
+    progress: ProgressRequest = None,
 ) -> JumpSearch:
     """Search for jumps, beats and chaos where contact can be lost, within a limit of processor time.
 
@@ -183,12 +185,14 @@ def search_jumps(
     speeds : slowest and fastest pinion speed of interest [rpm]; None: ``operating.speed_range``
     first : the pinion speed of most interest [rpm]; None: the operating speed
     supports : "springs": jumps are computed on springs alone; needed for a pair with shafts
-    progress : called with the finished fraction
+    progress : True (a bar), False (none), None (a bar where the call takes over two seconds), or a function
+        that is called with the finished fraction
 
     Raises
     ------
     ParameterError : windows or speeds that are no range, a time that is not positive, or shafts
     """
+    progress = reported_to(progress)
     pair = on_springs(load_gear_pair(pair), supports, "search_jumps")
     low, high = speed_range(pair) if speeds is None else checked_range("speeds", speeds)
     requested = [checked_range(f"windows[{j}]", window) for j, window in enumerate(windows)]

@@ -24,6 +24,7 @@ from floquet.orbits.folds import FoldContinuation
 from floquet.orbits.orbit import Orbit
 from floquet.orbits.response import MARGINAL, Branch, Member, Response, lost_stability
 from lumped.arguments import one_of, real_array, whole_number
+from lumped.display.progress import reported_to, shows_progress
 from lumped.errors import NumericalError, refuse
 from lumped.fields.units import SIValue, to_stated
 from lumped.labelling import Variable, labelled_dataset, provenance
@@ -31,7 +32,7 @@ from lumped.model.periodic_system import Supports, on_springs
 from lumped.ranges import warned_once
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
-from lumped.typing import BoolArray, FloatArray, IntArray, Progress
+from lumped.typing import BoolArray, FloatArray, IntArray, ProgressRequest
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -106,6 +107,7 @@ def pair_at(pair: GearPair, axis: str, value: float) -> GearPair:
     return JUMP_AXES[axis].apply(GearVariation(pair, supports="springs"), value).pair
 
 
+@shows_progress("map of jumps")
 @warned_once()
 def jump_map(
     pair: AnyPair,
@@ -114,7 +116,7 @@ def jump_map(
     *,
     seeds: int = 0,
     supports: Supports | None = None,
-    progress: Progress | None = None,
+    progress: ProgressRequest = None,
 ) -> xr.Dataset:
     """Map of motions with unilateral contact, and of jumps between motions, over speed and a second axis.
 
@@ -133,7 +135,8 @@ def jump_map(
     periods : mesh cycles after which motions repeat
     seeds : speeds at which runs settle for each value, to find isolated branches
     supports : "springs": the map is computed on springs alone; needed for a pair with shafts
-    progress : called with the finished fraction
+    progress : True (a bar), False (none), None (a bar where the call takes over two seconds), or a function
+        that is called with the finished fraction
 
     Returns
     -------
@@ -150,6 +153,7 @@ def jump_map(
     ParameterError : unknown axis, values outside its range, too many points, a pair without tip relief,
         or shafts
     """
+    progress = reported_to(progress)
     pair = on_springs(load_gear_pair(pair), supports, "jump_map")
     name, grid = _checked(pair, axes)
     wanted = sorted({whole_number("periods", n, 1, 64) for n in periods})

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -23,6 +23,7 @@ from floquet.orbits.orbit import Orbit
 from floquet.orbits.response import Member, Response
 from floquet.orbits.system import Run
 from lumped.arguments import real_array, whole_number
+from lumped.display.result import DisplayedResult
 from lumped.errors import NumericalError, refuse
 from lumped.labelling import Variable, provenance
 from lumped.model.equations import COORDINATES, X_P
@@ -49,8 +50,8 @@ JUMP = 0.1
 _SURE = 0.95
 
 
-@dataclass(frozen=True, eq=False)
-class GearOrbit:
+@dataclass(frozen=True, eq=False, repr=False)
+class GearOrbit(DisplayedResult):
     """A periodic motion of the unilateral gear pair.
 
     Attributes
@@ -58,6 +59,21 @@ class GearOrbit:
     pair : the gear pair at this speed, without shafts
     orbit : the motion in (q, x_p, x_g) and phase rates; with y_p, y_g where the back sides may strike
     """
+
+    shown: ClassVar = (
+        "speed_rpm",
+        "n",
+        "stable",
+        "spectral_radius",
+        "error",
+        "dte_rms",
+        "dte_mean",
+        "peak_to_peak",
+        "largest_load",
+        "contact_lost",
+        "pinion_torque",
+        "brake_torque",
+    )
 
     pair: GearPair
     orbit: Orbit = field(repr=False)

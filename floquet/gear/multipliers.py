@@ -27,6 +27,7 @@ from floquet.rank_one.piecewise import fit_pieces
 from floquet.rank_one.system import Gains, RankOneSystem
 from lumped.arguments import one_of, real_number
 from lumped.compiler import in_threads
+from lumped.display.result import DisplayedResult
 from lumped.mesh.tables import RIPPLES
 from lumped.model.periodic_system import AnySupports, LTVSystem, Supports
 from lumped.model.supports import Form
@@ -247,7 +248,7 @@ def fitted_block(feedback: Feedback, factor: float, rtol: float, levels: Sequenc
     )
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class GearPairMultipliers(Spectrum):
     """Multipliers of a gear pair over one mesh cycle, 10 in all; on shafts two for each mode.
 
@@ -460,8 +461,8 @@ def _proven(feedback: Feedback, variation: GearVariation, rtol: float) -> Spectr
     )
 
 
-@dataclass(frozen=True, eq=False)
-class RevolutionMultipliers:
+@dataclass(frozen=True, eq=False, repr=False)
+class RevolutionMultipliers(DisplayedResult):
     """Floquet multipliers over the period of teeth that differ.
 
     Multipliers smaller than the bound on their error are left out.

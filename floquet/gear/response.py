@@ -10,7 +10,7 @@ from collections.abc import Collection
 from dataclasses import dataclass, field, fields
 from functools import cached_property
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -42,6 +42,8 @@ from floquet.orbits.long_run import LongRun, Settled
 from floquet.orbits.response import MARGINAL, Branch, Member, Response, lost_stability
 from floquet.orbits.settling import settle
 from lumped.arguments import real_number, whole_number
+from lumped.display.progress import reported_to, shows_progress
+from lumped.display.result import DisplayedResult
 from lumped.errors import NumericalError
 from lumped.labelling import Variable, labelled_dataset, provenance
 from lumped.model.averaged import averaged_matrix
@@ -50,7 +52,7 @@ from lumped.model.periodic_system import LTVSystem, Supports, on_springs
 from lumped.ranges import warned_once
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
-from lumped.typing import FloatArray, Progress
+from lumped.typing import FloatArray, ProgressRequest
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -109,8 +111,8 @@ class Jump:
     n_after: int = field(metadata=label("1", "mesh cycles after, 0 where it does not repeat"))
 
 
-@dataclass(frozen=True, eq=False)
-class ResponseBranches:
+@dataclass(frozen=True, eq=False, repr=False)
+class ResponseBranches(DisplayedResult):
     """Periodic motions of a gear pair over speed.
 
     Attributes
@@ -121,6 +123,8 @@ class ResponseBranches:
     response : motions that the search has found, over the period
     member : system, limits and starts of the search
     """
+
+    shown: ClassVar = ("speeds_rpm", "branches", "contact_kept", "bifurcations", "back_side", "open")
 
     pair: GearPair
     speeds_rpm: tuple[float, float]
@@ -330,6 +334,7 @@ class ResponseBranches:
         )
 
 
+@shows_progress("response branches")
 @warned_once()
 def response_branches(
     pair: AnyPair,
@@ -340,7 +345,7 @@ def response_branches(
     back_side: bool = False,
     supports: Supports | None = None,
     seconds: float | None = None,
-    progress: Progress | None = None,
+    progress: ProgressRequest = None,
 ) -> ResponseBranches:
     """Branches of periodic motions over speed, stable and unstable, with their bifurcations.
 
@@ -363,12 +368,14 @@ def response_branches(
     supports : "springs": branches are computed on springs alone; needed for a pair with shafts
     seconds : processor time that the search may use [s]; ``ResponseBranches.open`` has the speeds for which
         the time did not suffice; None: no limit
-    progress : called with the finished fraction
+    progress : True (a bar), False (none), None (a bar where the call takes over two seconds), or a function
+        that is called with the finished fraction
 
     Raises
     ------
     ParameterError : speeds that are no range, a time that is not positive, or shafts
     """
+    progress = reported_to(progress)
     pair = on_springs(load_gear_pair(pair), supports, "response_branches")
     low, high = speed_range(pair) if speeds is None else checked_range("speeds", speeds)
     wanted = sorted({whole_number("periods", n, 1, MOST_CYCLES) for n in periods})

@@ -9,7 +9,7 @@ import itertools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -32,6 +32,8 @@ from floquet.gear.multipliers import gear_block
 from floquet.rank_one.batch import fast_monodromies, spectral_radii
 from floquet.rank_one.system import RankOneSystem
 from lumped.arguments import real_number, real_numbers, whole_number
+from lumped.display.progress import reported_to, shows_progress
+from lumped.display.result import DisplayedResult
 from lumped.errors import NumericalError, refuse
 from lumped.friction import mean_coefficient
 from lumped.labelling import labelled_dataset, provenance
@@ -39,7 +41,7 @@ from lumped.model.periodic_system import Supports, on_springs
 from lumped.path_of_contact import friction_path_function
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import LARGEST_SPEED, GearPair
-from lumped.typing import ComplexArray, FloatArray, Progress
+from lumped.typing import ComplexArray, FloatArray, ProgressRequest
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -85,6 +87,7 @@ def predicted_lines(
     }
 
 
+@shows_progress("stability boundaries")
 def stability_boundaries(
     pair: AnyPair,
     speed_rpm: tuple[float, float] = (500.0, 20000.0),
@@ -95,7 +98,7 @@ def stability_boundaries(
     xtol: float = 1e-8,
     rtol: float = 1e-9,
     supports: Supports | None = None,
-    progress: Progress | None = None,
+    progress: ProgressRequest = None,
 ) -> xr.Dataset:
     """Boundaries, spectral radius = 1, of the tongues of instability over speed.
 
@@ -115,7 +118,8 @@ def stability_boundaries(
     rtol : of the monodromy matrices
     supports : "springs", the pair's ``bearings``, or its "shafts", where labels number the modes that count;
         by default the shafts of a pair that has them
-    progress : told the finished fraction
+    progress : True (a bar), False (none), None (a bar where the call takes over two seconds), or a function
+        that is called with the finished fraction
 
     Returns
     -------
@@ -131,6 +135,7 @@ def stability_boundaries(
     ------
     ParameterError : unusable range or axis
     """
+    progress = reported_to(progress)
     base = GearVariation.of(pair, supports)
     low, high = checked_range("speed_rpm", speed_rpm)
     nodes = whole_number("nodes", nodes, 0, 1_000_000)
@@ -345,8 +350,8 @@ def _exponents_by_mode(matrix: FloatArray, omega: FloatArray, period: float) -> 
     return np.asarray(principal + 1j * mesh * np.round((omega - principal.imag) / mesh))
 
 
-@dataclass(frozen=True, eq=False)
-class TongueMargin:
+@dataclass(frozen=True, eq=False, repr=False)
+class TongueMargin(DisplayedResult):
     """One tongue of instability at zero mesh damping, and the mesh damping that closes the tongue.
 
     The bearings have the damping of the pair.
@@ -362,6 +367,8 @@ class TongueMargin:
     damping, left, right : edges of the tongue, left and right [rpm] over the mesh damping ratio, (k,)
     """
 
+    shown: ClassVar = ("label", "lower", "upper", "radius", "critical_damping", "tip_speed")
+
     label: str
     lower: float
     upper: float
@@ -373,13 +380,15 @@ class TongueMargin:
     right: FloatArray
 
 
-@dataclass(frozen=True, eq=False)
-class StabilityMargins:
+@dataclass(frozen=True, eq=False, repr=False)
+class StabilityMargins(DisplayedResult):
     """Distances of the operating point to instability.
 
     Attributes
     ----------
-    pair, rpm, damping : the gear pair, its pinion speed [rpm] and mesh damping ratio
+    pair : the gear pair
+    rpm : its pinion speed [rpm]
+    damping : its mesh damping ratio
     speed_range : range searched [rpm]
     friction_coefficient : constant coefficient in place of the friction law
     tongues : at zero mesh damping, by speed
@@ -388,6 +397,18 @@ class StabilityMargins:
     damping_at_speed : mesh damping ratio above which the operating speed is stable; None: the operating speed
         is stable at any damping
     """
+
+    shown: ClassVar = (
+        "rpm",
+        "damping",
+        "critical_damping",
+        "damping_at_speed",
+        "speed_range",
+        "friction_coefficient",
+        "unstable_here",
+        "tongues",
+        "above",
+    )
 
     pair: GearPair
     rpm: float

@@ -15,6 +15,7 @@ from floquet.orbits.closing import close_orbit, primitive
 from floquet.orbits.deadline import ENDLESS, Deadline
 from floquet.orbits.orbit import Orbit, state_scale
 from floquet.orbits.system import ContactSystem, Run
+from lumped.display.result import DisplayedResult
 from lumped.errors import NumericalError
 from lumped.typing import FloatArray
 
@@ -36,8 +37,8 @@ _ZERO_EXPONENT = 5e-3
 _PART = 32
 
 
-@dataclass(frozen=True, eq=False)
-class LongRun:
+@dataclass(frozen=True, eq=False, repr=False)
+class LongRun(DisplayedResult):
     """The motion to which a run has settled.
 
     Attributes

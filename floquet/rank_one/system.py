@@ -12,6 +12,7 @@ import numpy as np
 from scipy.linalg import eigh
 
 from floquet.engine.system import second_order
+from lumped.display.result import DisplayedResult
 from lumped.errors import refuse, shown
 from lumped.typing import ComplexArray, FloatArray
 
@@ -34,8 +35,8 @@ class Gains:
     edge_errors: FloatArray | None = None
 
 
-@dataclass(frozen=True, eq=False)
-class RankOneSystem:
+@dataclass(frozen=True, eq=False, repr=False)
+class RankOneSystem(DisplayedResult):
     """z'' + (D + G/T) z' + L z + w(t) (v . z) + wd(t) (v . z') = 0, periodic w and wd, m coordinates.
 
     Attributes

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from types import UnionType
 from typing import Annotated, Any, Literal, TypeVar, Union, get_args, get_origin
 
-from pydantic import BaseModel, ValidationError
+from pydantic import BaseModel, TypeAdapter, ValidationError
 from pydantic.fields import FieldInfo
 
 from lumped.arguments import nearest
 from lumped.errors import MOST_PROBLEMS, FieldProblem, ParameterError, quoted, shown
+from lumped.fields.hints import hint_of
 from lumped.fields.scope import about_key, about_teeth
 from lumped.fields.section import OneOf
 from lumped.fields.units import Quantity
@@ -22,25 +24,6 @@ from lumped.fields.units import Quantity
 Model = TypeVar("Model", bound=BaseModel)
 #: Parts of pydantic's location that name a member of a union of plain types.
 _UNION_PARTS = {"int", "float", "str"}
-#: Keys of other gear programs -> what to do. These keys are no misspelt keys of this program.
-_ELSEWHERE = {
-    ("quality", "accuracy", "accuracy_grade", "quality_class"): "Write deviations.tolerance_class in the "
-    "section of the gear (ISO 1328), or delete it: then all teeth are alike.",
-    (
-        "oil",
-        "oil_grade",
-        "grade",
-        "vg",
-    ): "Write viscosity_law = { iso_vg = 220, temperature = 70 } in lubricant, "
-    "with the grade and the temperature (degC) of your oil.",
-    ("power", "input_power"): "Write pinion_torque: in N m it is 9549.3 times the power in kW over the "
-    "speed in rpm.",
-    ("module", "normal_module", "pressure_angle"): "Both gears have one rack: write it in basic_rack.",
-    ("material", "steel"): "Write youngs_modulus, poisson_ratio and density; without them it is steel.",
-    ("eccentricity", "runout"): "Write mounting.eccentricity in the section of the gear.",
-    ("mu", "friction_coefficient"): "For a constant mu write law = 'coulomb' and coefficient in friction.",
-}
-_ACTIONS = {key: action for keys, action in _ELSEWHERE.items() for key in keys}
 _NO_TABLE = {"model_type", "model_attributes_type", "dict_type"}
 
 
@@ -50,11 +33,17 @@ def made_of(root: type[Model], data: Mapping[str, Any], source: str, folder: Pat
     Data files named in the data are read relative to ``folder``.
     """
     try:
-        return root.model_validate(data, context={"folder": folder})
+        reader: TypeAdapter[Model] = _reader(root)
+        return reader.validate_python(data, context={"folder": folder})
     except ParameterError as error:
         raise ParameterError(list(error.problems), source) from None
     except ValidationError as error:
         raise ParameterError(translated(error, root), source) from None
+
+
+@cache
+def _reader(root: type[Model]) -> TypeAdapter[Model]:
+    return TypeAdapter(root)
 
 
 def translated(error: ValidationError, root: type[BaseModel]) -> list[FieldProblem]:
@@ -110,7 +99,10 @@ def unknown_key(path: str, keys: list[str], part: str, root: type[BaseModel] | N
     below = _below(root, path) if root is not None else ""
     close = nearest(part, names)
     guess = below or close if path == part else close or below  # names of sections are like no field's
-    action = about_key(part) or _ACTIONS.get(part) or guess or "Remove the key, or correct its name."
+    hint = hint_of(part)
+    if hint is not None and names and not about_key(part):
+        return FieldProblem(shown(path), "unknown key", hint.named(path), hint.sentence)
+    action = about_key(part) or guess or "Remove the key, or correct its name."
     return FieldProblem(shown(path) or "(empty)", "unknown key", allowed, action)
 
 
@@ -119,8 +111,21 @@ def _below(root: type[BaseModel], path: str) -> str:
 
     Empty: there is no such field.
     """
-    fields: dict[str, list[str]] = {}
     *parents, part = path.split(".")
+    paths = [repr(one) for one in fields_named(root, part, parents)]
+    return f"Did you mean {' or '.join(paths)}?" if paths else ""
+
+
+def fields_named(root: type[BaseModel], part: str, parents: Sequence[str] = ()) -> list[str]:
+    """Return paths of fields in inner sections whose name is near to a word, or contains the word.
+
+    Parameters
+    ----------
+    root : model of the whole file
+    part : the word
+    parents : section in which to look
+    """
+    fields: dict[str, list[str]] = {}
     owners = [root]
     for parent in parents:
         inside = [one.model_fields[parent] for one in owners if parent in one.model_fields]
@@ -130,8 +135,7 @@ def _below(root: type[BaseModel], path: str) -> str:
             fields.setdefault(key, []).append(".".join((*parents, section, key)))
     keys = [part] if part in fields else [key for key in fields if part in key.split("_")]
     close = keys or difflib.get_close_matches(part[:80], fields, n=1, cutoff=0.8)
-    paths = [repr(path) for key in close for path in fields[key]]
-    return f"Did you mean {' or '.join(paths)}?" if paths else ""
+    return [path for key in close for path in fields[key]]
 
 
 def _problems(item: Any, root: type[BaseModel]) -> list[FieldProblem]:

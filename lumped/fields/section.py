@@ -26,6 +26,11 @@ class Section(BaseModel):
             raise refuse(name, value, "a value of pair.with_(...)", action)
         super().__setattr__(name, value)
 
+    def __dir__(self) -> list[str]:
+        """Return the names for users: fields, properties and methods of this program."""
+        library = {name for name in dir(BaseModel) if not name.startswith("__")}
+        return sorted(set(super().__dir__()) - library)
+
     def to_mapping(self) -> dict[str, Any]:
         """Return nested plain data in file units; None is left out, as a file cannot say it."""
         result: dict[str, Any] = {}

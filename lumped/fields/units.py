@@ -116,6 +116,7 @@ UNITS: dict[str, StatedUnit] = {
     "deg": StatedUnit("rad", _PI / 180, "an angle", "0.349 rad"),
     "rpm": StatedUnit("rad/s", _PI / 30, "a rotational speed", "104.7 rad/s"),
     "N*m": StatedUnit("N*m", Decimal(1), "a torque", "200 lbf*in"),
+    "kW": StatedUnit("W", Decimal("1e3"), "a power", "6.7 hp"),
     "kg": StatedUnit("kg", Decimal(1), "a mass", "0.7 lb"),
     "kg*m**2": StatedUnit("kg*m**2", Decimal(1), "a moment of inertia", "1.05 lb*inch**2"),
     "kg/m**3": StatedUnit("kg/m**3", Decimal(1), "a density", "7.85 g/cm**3"),

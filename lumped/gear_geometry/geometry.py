@@ -10,8 +10,9 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import ClassVar, Literal
 
+from lumped.display.result import DisplayedResult
 from lumped.errors import FieldProblem, refuse
 from lumped.gear_geometry.interference import tip_clearance
 from lumped.gear_geometry.profile_shift import distance_without_backlash, operating_pressure_angle
@@ -35,8 +36,8 @@ class Wheel:
     bore: float
 
 
-@dataclass(frozen=True)
-class Geometry:
+@dataclass(frozen=True, repr=False)
+class Geometry(DisplayedResult):
     """Lengths and angles of a gear pair, SI.
 
     X and Y are the tangent points of the line of action on the pinion's and the gear's base circle; A, B, P,
@@ -65,6 +66,26 @@ class Geometry:
     omega_pinion, omega_gear : nominal speeds [rad/s]
     mesh_period : T_m [s]
     """
+
+    shown: ClassVar = (
+        "contact_ratio",
+        "base_pitch",
+        "centre_distance",
+        "operating_pressure_angle",
+        "normal_backlash",
+        "face_width",
+        "base_radius_pinion",
+        "base_radius_gear",
+        "tip_radius_pinion",
+        "tip_radius_gear",
+        "L_XA",
+        "L_XP",
+        "L_XD",
+        "L_XY",
+        "omega_pinion",
+        "omega_gear",
+        "mesh_period",
+    )
 
     base_pitch: float
     contact_ratio: float

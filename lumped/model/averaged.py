@@ -10,8 +10,9 @@ import numpy as np
 
 from lumped.arguments import one_of
 from lumped.errors import NumericalError
+from lumped.labelling import provenance
 from lumped.model.equations import X_G, X_P
-from lumped.model.periodic_system import LTVSystem, Supports, supports_of
+from lumped.model.periodic_system import LTVSystem, Supports, on_springs, supports_of
 from lumped.model.supports import Form
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
@@ -19,6 +20,7 @@ from lumped.typing import FloatArray
 
 if TYPE_CHECKING:
     import control
+    import xarray as xr
 
 #: Gauss-Legendre rule per polynomial piece of the average, exact to degree 47.
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
@@ -33,13 +35,16 @@ def averaged_matrix(system: LTVSystem) -> FloatArray:
     return total / system.period
 
 
-def averaged_state_space(pair: GearPair, form: Form = "elastic") -> control.StateSpace:
+def averaged_state_space(
+    pair: AnyPair, form: Form = "elastic", *, supports: Supports | None = None
+) -> control.StateSpace:
     """Time-averaged linear model on springs from the torques T_p, T_g to the transmission error, x_p and x_g.
 
     Parameters
     ----------
-    pair : a validated gear pair
+    pair : gear pair, preset name or parameter file
     form : "elastic" (10 states) or "mesh" (6 states); the rigid rotation is left out
+    supports : "springs"; a pair with shafts must ask for springs
 
     Returns
     -------
@@ -47,10 +52,13 @@ def averaged_state_space(pair: GearPair, form: Form = "elastic") -> control.Stat
 
     Raises
     ------
-    ParameterError : form "full", whose rigid rotation has no frequency response at rest
+    ParameterError : form "full", whose rigid rotation has no frequency response at rest, or shafts
+
+    Sources: docs/theory/equations.md, the state matrix averaged over one mesh cycle.
     """
     import control  # takes longer to import than all else of lumped; modes do without
 
+    pair = on_springs(load_gear_pair(pair), supports, "averaged_state_space")
     one_of("form", form, ("elastic", "mesh"), "The rigid rotation has no steady response.")
     system = LTVSystem.of(pair, form, supports="springs")
     m = len(system.coordinates)
@@ -90,13 +98,19 @@ class Mode:
     shape: dict[str, float]
 
 
-def natural_frequencies(pair: AnyPair, *, supports: Supports | None = None) -> FloatArray:
+def natural_frequencies(pair: AnyPair, *, supports: Supports | None = None) -> xr.DataArray:
     """Return the natural frequencies of the pair with its mean mesh stiffness, increasing [Hz].
 
     Parameters
     ----------
     pair : gear pair, preset name or parameter file
     supports : "springs" or "shafts", as of ``periodic_system``; by default the shafts of a pair that has them
+
+    Returns
+    -------
+    xarray.DataArray over ``mode``, counted from 1, with the coordinates ``damping_ratio``,
+    ``resonant_speed_rpm`` (pinion speed at which the mesh frequency is the natural frequency) and
+    ``coordinate`` (the one that moves most)
 
     Raises
     ------
@@ -105,8 +119,44 @@ def natural_frequencies(pair: AnyPair, *, supports: Supports | None = None) -> F
 
     Sources: docs/theory/equations.md, the state matrix averaged over one mesh cycle.
     """
+    import xarray as xr  # takes a third of a second, which an import of the package should not
+
     pair = load_gear_pair(pair)
-    return np.array([mode.natural_frequency for mode in modes(pair, supports_of(pair, supports))])
+    chosen = supports_of(pair, supports)
+    computed = modes(pair, chosen)
+    of_modes = {
+        "mode": ("mode", np.arange(1, len(computed) + 1), {"units": "1", "long_name": "mode"}),
+        "damping_ratio": (
+            "mode",
+            np.array([mode.damping_ratio for mode in computed]),
+            {"units": "1", "long_name": "damping ratio"},
+        ),
+        "resonant_speed_rpm": (
+            "mode",
+            np.array([mode.resonant_speed for mode in computed]),
+            {
+                "units": "rpm",
+                "long_name": "pinion speed at which the mesh frequency is the natural frequency",
+            },
+        ),
+        "coordinate": (
+            "mode",
+            np.array([_largest(mode) for mode in computed], dtype=object),
+            {"units": "1", "long_name": "coordinate that moves most"},
+        ),
+    }
+    return xr.DataArray(
+        np.array([mode.natural_frequency for mode in computed]),
+        dims="mode",
+        coords=of_modes,
+        name="natural_frequency",
+        attrs={"units": "Hz", "long_name": "natural frequency"} | provenance(pair) | {"supports": chosen},
+    )
+
+
+def _largest(mode: Mode) -> str:
+    """Coordinate that moves most in a mode."""
+    return max(mode.shape, key=lambda name: abs(mode.shape[name]))
 
 
 def modes(pair: GearPair, supports: Supports = "springs") -> tuple[Mode, ...]:

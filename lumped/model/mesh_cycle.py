@@ -9,11 +9,12 @@ import math
 import warnings
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from typing import Any, NamedTuple, Self
+from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lumped.display.result import DisplayedResult
 from lumped.errors import LikeTeethWarning
 from lumped.gear_geometry.geometry import Geometry
 from lumped.mesh.linear import forces_of_laws
@@ -120,9 +121,11 @@ class PairState:
         )
 
 
-@dataclass(frozen=True, eq=False)
-class MeshCycle:
+@dataclass(frozen=True, eq=False, repr=False)
+class MeshCycle(DisplayedResult):
     """The mesh cycle of a pair, from its geometry and elements, at nominal rotation; t = 0 is pair n at A."""
+
+    shown: ClassVar = ("period", "mean_stiffness", "start", "end")
 
     geometry: Geometry
     elements: MeshElements

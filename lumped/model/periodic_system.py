@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.arguments import one_of
+from lumped.display.result import DisplayedResult
 from lumped.errors import refuse
 from lumped.mesh.records import AT_REST, BY_APPROACH, BY_RATE, Records
 from lumped.model.equations import Structure, structure
@@ -83,8 +84,8 @@ class MeshGain:
     pairs: PairState
 
 
-@dataclass(frozen=True, eq=False)
-class LTVSystem:
+@dataclass(frozen=True, eq=False, repr=False)
+class LTVSystem(DisplayedResult):
     """x' = A(t) x + b(t) with x = (z, z'), z the coordinates of ``form``; SI.
 
     Attributes

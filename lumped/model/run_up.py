@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lumped.arguments import real_number, real_numbers
+from lumped.display.progress import reported_to, shows_progress
 from lumped.errors import NumericalError, refuse
 from lumped.labelling import Variable, provenance
 from lumped.mesh.tables import MeshTables
@@ -29,7 +30,7 @@ from lumped.model.tooth_laws import ToothLaws
 from lumped.ranges import warned_once
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import LARGEST_SPEED, GearPair
-from lumped.typing import FloatArray, IntArray, Progress
+from lumped.typing import FloatArray, IntArray, ProgressRequest
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -42,6 +43,7 @@ _MOST = 3_000_000
 _STEP = 1e-3
 
 
+@shows_progress("run-up")
 @warned_once()
 def run_up(
     pair: AnyPair,
@@ -51,7 +53,7 @@ def run_up(
     contact: ContactArgument = "linear",
     supports: Supports | None = None,
     samples_per_cycle: int = 32,
-    progress: Progress | None = None,
+    progress: ProgressRequest = None,
 ) -> xr.Dataset:
     """Motion while the speed goes evenly from one value to another (docs/theory/equations.md, "Run-up").
 
@@ -67,7 +69,8 @@ def run_up(
     seconds : duration [s]; the run ends with the last whole mesh cycle
     contact, supports : as of `lumped.simulate`
     samples_per_cycle : output times per mesh cycle, even over the angle: 32 resolve 16 mesh orders
-    progress : called with the finished fraction
+    progress : True (a bar), False (none), None (a bar where the call takes over two seconds), or a function
+        that is called with the finished fraction
 
     Returns
     -------
@@ -80,6 +83,7 @@ def run_up(
         output times
     NumericalError : a speed on the way has no periodic motion, or the motion overflows
     """
+    progress = reported_to(progress)
     pair = load_gear_pair(pair)
     form = motion_form(pair, contact)
     supports = supports_of(pair, supports)

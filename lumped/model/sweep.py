@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lumped.arguments import real_numbers
+from lumped.display.progress import reported_to, shows_progress
 from lumped.errors import NumericalError
 from lumped.labelling import labelled_dataset, provenance
 from lumped.model.averaged import modes
@@ -26,7 +27,7 @@ from lumped.path_of_contact import friction_path_function
 from lumped.ranges import warned_once
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
-from lumped.typing import FloatArray, Progress
+from lumped.typing import FloatArray, Progress, ProgressRequest
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -46,6 +47,7 @@ _ORDERS = 6
 _FIRST = 0.3
 
 
+@shows_progress("speed sweep")
 @warned_once()
 def speed_sweep(
     pair: AnyPair,
@@ -54,7 +56,7 @@ def speed_sweep(
     contact: ContactArgument = "linear",
     supports: Supports | None = None,
     samples_per_cycle: int = 128,
-    progress: Progress | None = None,
+    progress: ProgressRequest = None,
 ) -> xr.Dataset:
     """Periodic motion over pinion speed, with the teeth and on the shafts that the pair has.
 
@@ -64,7 +66,8 @@ def speed_sweep(
     speeds_rpm : pinion speeds [rpm], positive
     contact, supports : as of `lumped.steady_state`
     samples_per_cycle : times per cycle; peak to peak takes in extremes between them
-    progress : called with the finished fraction
+    progress : True (a bar), False (none), None (a bar where the call takes over two seconds), or a function
+        that is called with the finished fraction
 
     Returns
     -------
@@ -78,6 +81,7 @@ def speed_sweep(
     ------
     ParameterError : a speed or the number of samples is out of range, before any work starts
     """
+    progress = reported_to(progress)
     pair = load_gear_pair(pair)
     form = motion_form(pair, contact)
     supports = supports_of(pair, supports)

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lumped.arguments import whole_number
+from lumped.display.progress import reported_to, shows_progress
 from lumped.errors import NumericalError
 from lumped.labelling import provenance
 from lumped.model.cycle_maps import CycleSteps, linear_motion, linear_steps, loads_of, stepped_run
@@ -28,7 +29,7 @@ from lumped.model.tooth_laws import ToothLaws
 from lumped.model.unilateral_motion import unilateral_motion
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
-from lumped.typing import Progress
+from lumped.typing import Progress, ProgressRequest
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
 _BLOCK = 200
 
 
+@shows_progress("lumped model")
 def simulate(
     pair: AnyPair,
     cycles: int = 20,
@@ -46,7 +48,7 @@ def simulate(
     samples_per_cycle: int = 256,
     initial: Initial | ArrayLike = "static",
     as_printed: Collection[int] = (),
-    progress: Progress | None = None,
+    progress: ProgressRequest = None,
 ) -> xr.Dataset:
     """Transient of the lumped model (docs/theory/equations.md, eqs. 1 to 9).
 
@@ -66,7 +68,8 @@ def simulate(
     initial : "static" (at rest relative to nominal rotation, mesh wound up by the mean load), "periodic"
         (the periodic motion at t = 0) or 12 states in SI (on shafts, those of ``LTVSystem.state_names``)
     as_printed : equations out of 1, 2, 7, 9 whose printed sign is used; of linear contact and like teeth
-    progress : called with the finished fraction
+    progress : True (a bar), False (none), None (a bar where the call takes over two seconds), or a function
+        that is called with the finished fraction
 
     Returns
     -------
@@ -80,6 +83,7 @@ def simulate(
     NumericalError : no periodic motion exists, the motion overflows, or the speed is so low that a cycle
         would take minutes
     """
+    progress = reported_to(progress)
     pair = load_gear_pair(pair)
     cycles = whole_number("cycles", cycles, 1, 100_000)
     samples = whole_number("samples_per_cycle", samples_per_cycle, 8, 65536)

@@ -13,6 +13,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from lumped.display.result import DisplayedResult
 from lumped.path_function import PathFunction
 from lumped.root_in_bracket import roots_in_brackets
 from lumped.schema.assumed import Assumed
@@ -31,8 +32,8 @@ _OF_BEARING = {"loa_damping_ratio": 0.0, "oloa_damping_ratio": 0.0}
 _SAMPLES = 500
 
 
-@dataclass(frozen=True, eq=False)
-class MeshElements:
+@dataclass(frozen=True, eq=False, repr=False)
+class MeshElements(DisplayedResult):
     """Element laws of one tooth pair over the interval of xi in which it can touch; zero outside.
 
     The interval is [L_XA, L_XD] with prescribed contact, and longer with loaded contact.
@@ -121,7 +122,7 @@ def at_rest(pair: GearPair) -> GearPair:
         "gear": pair.gear.model_copy(update=_OF_GEAR),
         "bearings": pair.bearings.model_copy(update=bearings),
         "mesh": pair.mesh.model_copy(update={"damping_ratio": 0.0}),
-        "operating": pair.operating.model_copy(update={"pinion_speed": _SPEED}),
+        "operating": pair.operating.at_speed(_SPEED),
     }
     return GearPair.model_construct(**fields)
 

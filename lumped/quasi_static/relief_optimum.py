@@ -17,6 +17,7 @@ import numpy as np
 from scipy.optimize import minimize
 
 from lumped.arguments import real_number
+from lumped.display.result import DisplayedResult
 from lumped.errors import refuse
 from lumped.gear_geometry.geometry import Geometry
 from lumped.quasi_static.load_sharing import share_load
@@ -29,8 +30,8 @@ from lumped.typing import FloatArray
 _LEAST_MATERIAL = 1e-2
 
 
-@dataclass(frozen=True)
-class OptimalRelief:
+@dataclass(frozen=True, repr=False)
+class OptimalRelief(DisplayedResult):
     """Linear tip relief of both gears with the least peak to peak static transmission error.
 
     Attributes

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.arguments import real_numbers, whole_number
+from lumped.display.result import DisplayedResult
 from lumped.errors import NumericalError, refuse
 from lumped.labelling import labelled_dataset, provenance
 from lumped.mesh.unloaded import couplings
@@ -37,8 +38,8 @@ _INSIDE = 1e-12
 _LEAST_TORQUE = 1e-6
 
 
-@dataclass(frozen=True)
-class MeshPositions:
+@dataclass(frozen=True, repr=False)
+class MeshPositions(DisplayedResult):
     """Tooth pairs over one mesh cycle, those near the path of contact included.
 
     Attributes

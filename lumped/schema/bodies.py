@@ -9,13 +9,14 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from lumped.display.result import DisplayedResult
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.gear import Gear
 from lumped.schema.pair import GearPair
 
 
-@dataclass(frozen=True)
-class Bodies:
+@dataclass(frozen=True, repr=False)
+class Bodies(DisplayedResult):
     """Rigid-body properties, SI.
 
     Attributes

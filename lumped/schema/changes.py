@@ -24,6 +24,7 @@ _GEARS = ("pinion", "gear")
 SHORT_NAMES = {
     "speed": ("operating.pinion_speed",),
     "torque": ("operating.pinion_torque",),
+    "power": ("operating.pinion_power",),
     "range": ("operating.speed_range",),
     "law": ("friction.law",),
     "stiffness": ("mesh.stiffness",),
@@ -51,6 +52,7 @@ _STIFFNESS = "mesh.stiffness.model"
 _ALTERNATIVES = (
     *((f"{gear}.addendum", f"{gear}.tip_diameter", f"{gear}.tip_alteration") for gear in _GEARS),
     ("lubricant.viscosity", "lubricant.viscosity_law"),
+    ("operating.pinion_torque", "operating.pinion_power"),
     *(
         tuple(f"{gear}.{end}_relief.{start}" for start in STARTS)
         for gear in ("pinion", "gear")
@@ -120,7 +122,7 @@ def changed(pair: Section, changes: Mapping[str, Any]) -> dict[str, Any]:
             if value is not None and any(f"{path}.".startswith(f"{one}.") for one in group):
                 outdated += group
                 for other in group:
-                    if not path.startswith(f"{other}."):
+                    if not path.startswith(f"{other}.") and other not in changes:
                         _assign(type(pair), data, other, None)
         _assign(type(pair), data, path, value)
         for table in (sources, assumed):

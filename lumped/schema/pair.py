@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import html
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property, lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal, NoReturn
 
 from pydantic import BeforeValidator, Field, PlainSerializer, model_validator
 from pydantic.fields import FieldInfo
@@ -22,7 +22,7 @@ from lumped.errors import FieldProblem, ParameterError, refuse
 from lumped.faults.base import Flank
 from lumped.fields.refusals import field_of, made_of
 from lumped.fields.section import Section, Text
-from lumped.fields.units import Quantity, QuantityRange, SIValue, to_si, to_stated
+from lumped.fields.units import Quantity, to_si, to_stated
 from lumped.friction.base import ContactPath
 from lumped.friction.registry import law_of
 from lumped.friction.table import TABLE
@@ -51,44 +51,20 @@ from lumped.schema.contact import Lubricant, Mesh, without_assumed_defaults
 from lumped.schema.friction import Friction, nominal_contact
 from lumped.schema.gear import BasicRack, Gear
 from lumped.schema.old_formats import FORMAT, upgraded
+from lumped.schema.operating import LARGEST_SPEED as LARGEST_SPEED
+from lumped.schema.operating import OperatingPoint as OperatingPoint
 from lumped.schema.shafts import Shafts
-from lumped.schema.teeth import TorqueRipple
 
-#: Largest speed of a pinion [rpm].
-LARGEST_SPEED = 200000.0
-_RUNNING = "Give the running speed; the pinion drives in its positive sense."
 #: Name that a pair does not have -> what to write.
 _INSTEAD = {
     **dict.fromkeys(("save", "write", "to_file"), "Path(...).write_text(pair.to_toml())"),
     **dict.fromkeys(("to_dict", "as_dict"), "pair.to_mapping()"),
+    **dict.fromkeys(("replace", "update", "set", "change", "vary"), "pair.with_(speed=2000)"),
+    **dict.fromkeys(("plot", "simulate", "run", "predict"), "spurcheck.predict(pair).plot()"),
+    **dict.fromkeys(("report",), "spurcheck.report(pair, 'folder')"),
     "contact_ratio": "pair.geometry.contact_ratio",
     "mesh_frequency": "1 / pair.geometry.mesh_period",
 }
-
-
-class OperatingPoint(Section):
-    """Speeds and torques of the pair. The pinion drives in the positive sense."""
-
-    pinion_speed: Annotated[float, Quantity("rpm", above=0, at_most=LARGEST_SPEED, action=_RUNNING)] = Field(
-        description="nominal speed of the pinion"
-    )
-    pinion_torque: Annotated[float, Quantity("N*m", at_least=1e-9, at_most=1e9)] = Field(
-        description="torque driving the pinion"
-    )
-    brake_torque: Annotated[
-        Literal["balanced"] | float, Quantity("N*m", above=0, at_most=1e9, word="balanced")
-    ] = Field("balanced", description="torque braking the gear, or 'balanced': no drift of the mean speed")
-    speed_range: Annotated[
-        tuple[float, float] | None,
-        QuantityRange("rpm", above=0, at_most=LARGEST_SPEED, action="Give two pinion speeds: 200..3000."),
-    ] = Field(
-        None,
-        description="lowest and highest pinion speed of charts, sweeps and margins; default: from a tenth of "
-        "pinion_speed to twice it",
-    )
-    torque_ripple: tuple[TorqueRipple, ...] = Field(
-        (), max_length=100, description="harmonics of the torques over the turns of the shafts"
-    )
 
 
 #: Problems that a wrong centre distance may cause.
@@ -444,12 +420,11 @@ class GearPair(Section, metaclass=_InOurWords):
 
     def at_speed(self, rpm: float) -> GearPair:
         """The pair at another pinion speed [rpm] within the speed range of the pair, without a new check."""
-        speed = SIValue(to_si(rpm, "rpm"), "rad/s")
         sections = {name: getattr(self, name) for name in GearPair.model_fields}
-        sections["operating"] = self.operating.model_copy(update={"pinion_speed": speed})
+        sections["operating"] = self.operating.at_speed(to_si(rpm, "rpm"))
         sections["assumed"] = self.assumed.without("operating.pinion_speed")
         pair = GearPair.model_construct(**sections)
-        pair.__dict__["geometry"] = self.geometry.at_speed(speed)
+        pair.__dict__["geometry"] = self.geometry.at_speed(sections["operating"].pinion_speed)
         return pair
 
     if not TYPE_CHECKING:  # a checker knows the fields
@@ -561,6 +536,32 @@ class GearPair(Section, metaclass=_InOurWords):
 
     def _changed(self, fields: Mapping[str, Any]) -> GearPair:
         return validated(changed(self, fields), f"{self.name} varied")
+
+
+_VARIATION = "Make a variation: pair.with_(speed=2000). A pair does not change and needs no copy."
+_FROM_DATA = "Read a mapping or a file with load_gear_pair(...)."
+#: Method of the schema library that a pair has by inheritance -> what to write instead.
+_OF_THE_LIBRARY = {
+    **dict.fromkeys(("copy", "model_copy", "construct"), _VARIATION),
+    **dict.fromkeys(("dict", "model_dump"), "Plain data: pair.to_mapping()."),
+    **dict.fromkeys(("json", "model_dump_json"), "Text of a file: pair.to_toml()."),
+    **dict.fromkeys(("schema", "schema_json"), "The JSON Schema: lumped.json_schema()."),
+    **dict.fromkeys(("model_validate", "model_validate_json", "model_validate_strings"), _FROM_DATA),
+    **dict.fromkeys(("parse_obj", "parse_raw", "parse_file", "validate", "from_orm"), _FROM_DATA),
+}
+
+
+def _refusing(name: str, action: str) -> Callable[..., NoReturn]:
+    def method(*_: Any, **__: Any) -> NoReturn:
+        raise refuse(f"pair.{name}", "a method of the schema library", "the methods of a pair", action)
+
+    method.__name__ = name
+    method.__doc__ = f"Refuse. {action}"
+    return method
+
+
+for _name, _action in _OF_THE_LIBRARY.items():
+    setattr(GearPair, _name, _refusing(_name, _action))
 
 
 def leaf_paths(pair: GearPair) -> dict[str, Any]:

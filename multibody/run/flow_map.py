@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lumped.arguments import one_of, whole_number
+from lumped.display.result import DisplayedResult
 from lumped.errors import NumericalError
 from lumped.model.period_closure import close_period
 from lumped.model.periodic_system import Supports, on_springs, supports_of
@@ -54,8 +55,8 @@ _ITERATIONS = 40
 _BY_BRAKE = 2
 
 
-@dataclass(frozen=True, eq=False)
-class FlowMap:
+@dataclass(frozen=True, eq=False, repr=False)
+class FlowMap(DisplayedResult):
     """Periodic motion and its linearised map over one mesh cycle.
 
     Attributes

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lumped.arguments import whole_number
+from lumped.display.progress import reported_to, shows_progress
 from lumped.labelling import labelled_dataset, provenance
 from lumped.model.periodic_system import Supports, on_springs, supports_of
 from lumped.model.results import cycle_peak_to_peak, labelled
@@ -21,7 +22,7 @@ from lumped.model.steady import sample_times
 from lumped.model.sweep import running_speeds
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
-from lumped.typing import FloatArray, Progress
+from lumped.typing import FloatArray, Progress, ProgressRequest
 from multibody.run.integration import Segment
 from multibody.run.model import ExudynModel, contact_state, from_lumped_state, to_lumped_state
 from multibody.run.setup import MOST_CYCLES, Fidelity, Setup, prepare
@@ -177,6 +178,7 @@ class Recorder:
 Run = Callable[[FloatArray, Callable[[int, Segment], None]], tuple[FloatArray, FloatArray]]
 
 
+@shows_progress("multibody model")
 def simulate(
     pair: AnyPair,
     cycles: int = 20,
@@ -188,7 +190,7 @@ def simulate(
     rtol: float = 1e-8,
     friction_velocity: float | None = None,
     supports: Supports | None = None,
-    progress: Progress | None = None,
+    progress: ProgressRequest = None,
 ) -> xr.Dataset:
     """Transient of the gear pair as an exudyn multibody system.
 
@@ -210,7 +212,8 @@ def simulate(
         ``multibody.run.setup``)
     supports : "springs" of ``pair.bearings``, or the elastic "shafts" of ``pair.shafts`` with their own
         bearings, motor and load; by default the shafts of a pair that has them
-    progress : called with the finished fraction
+    progress : True (a bar), False (none), None (a bar where the call takes over two seconds), or a function
+        that is called with the finished fraction
 
     Returns
     -------
@@ -231,6 +234,7 @@ def simulate(
     At fidelity "exact" the friction law is read where the nominal motion slides as fast as the teeth actually
     do, with the sign of the actual sliding velocity, so friction never feeds energy in.
     """
+    progress = reported_to(progress)
     pair = load_gear_pair(pair)
     cycles = whole_number("cycles", cycles, 1, MOST_CYCLES)
     supports = supports_of(pair, supports)
@@ -327,6 +331,7 @@ _VARIABLES = {
 }
 
 
+@shows_progress("speed sweep, multibody model")
 def speed_sweep(
     pair: AnyPair,
     speeds_rpm: Iterable[float],
@@ -338,7 +343,7 @@ def speed_sweep(
     effects: Collection[str] | Mapping[str, bool] | None = None,
     rtol: float = 1e-7,
     supports: Supports | None = None,
-    progress: Progress | None = None,
+    progress: ProgressRequest = None,
 ) -> xr.Dataset:
     """Response over speed with the state carried from one speed to the next, in the order given.
 
@@ -351,7 +356,8 @@ def speed_sweep(
     samples_per_cycle : output times per mesh cycle
     fidelity, effects, rtol : as ``multibody.simulate``
     supports : "springs", on which alone a state is carried on; needed for a pair with shafts
-    progress : called with the finished fraction
+    progress : True (a bar), False (none), None (a bar where the call takes over two seconds), or a function
+        that is called with the finished fraction
 
     Returns
     -------
@@ -362,6 +368,7 @@ def speed_sweep(
     ------
     ParameterError, NumericalError : as ``multibody.simulate``
     """
+    progress = reported_to(progress)
     pair = on_springs(load_gear_pair(pair), supports, "multibody.speed_sweep")
     speeds = running_speeds(speeds_rpm)
     settle = whole_number("settle", settle, 0, MOST_CYCLES)

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lumped.arguments import whole_number
+from lumped.display.result import DisplayedResult
 from lumped.errors import refuse
 from lumped.model.periodic_system import LTVSystem, Supports, on_springs
 from lumped.model.solution import Initial
@@ -39,8 +40,8 @@ _HAIR = 1e-11
 _SHRUNK = 1e-6
 
 
-@dataclass(frozen=True)
-class PowerBalance:
+@dataclass(frozen=True, repr=False)
+class PowerBalance(DisplayedResult):
     """Work and energy over a run [J].
 
     Attributes

@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from lumped.display.progress import reported_to, shows_progress
 from lumped.errors import NumericalError
 from lumped.labelling import labelled_dataset, provenance
 from lumped.model.periodic_system import Supports, supports_of
 from lumped.model.results import needs_pull
 from lumped.schema.files import AnyPair, load_gear_pair
-from lumped.typing import Progress
+from lumped.typing import ProgressRequest
 from multibody.run.effects import CAUSES, EFFECTS, default_effects, form_of
 from multibody.run.flow_map import Orbit, cycles_of, find_orbit
 from multibody.run.setup import prepare
@@ -29,8 +30,9 @@ _QUANTITIES = ("dte", "x_p", "y_p", "theta_p")
 _KINDS = {"alone": "by this cause", "without": "all causes but this"}
 
 
+@shows_progress("causes of the difference")
 def attribution(
-    pair: AnyPair, *, supports: Supports | None = None, progress: Progress | None = None
+    pair: AnyPair, *, supports: Supports | None = None, progress: ProgressRequest = None
 ) -> xr.Dataset:
     """How much each finite-motion effect changes the periodic motion, and the momentary load in friction.
 
@@ -41,7 +43,8 @@ def attribution(
     ----------
     pair : a validated gear pair
     supports : "springs" or "shafts", as of ``multibody.simulate``; by default shafts for a pair with shafts
-    progress : called with the finished fraction
+    progress : True (a bar), False (none), None (a bar where the call takes over two seconds), or a function
+        that is called with the finished fraction
 
     Returns
     -------
@@ -60,6 +63,7 @@ def attribution(
     ------
     NumericalError : the lumped motion needs teeth that pull, or a motion is not found
     """
+    progress = reported_to(progress)
     pair = load_gear_pair(pair)
     supports = supports_of(pair, supports)
     orbits: dict[frozenset[str], tuple[Orbit, xr.Dataset]] = {}

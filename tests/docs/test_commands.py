@@ -1,5 +1,6 @@
 """Does everything that the documentation tells a reader to type do what it says?"""
 
+import inspect
 import re
 import shlex
 import shutil
@@ -119,10 +120,10 @@ def test_a_page_works_from_top_to_bottom(page, blocks, root, tmp_path, monkeypat
         return
     shutil.copytree(belongings, tmp_path, dirs_exist_ok=True)
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setitem(write_interactive_page.__kwdefaults__, "sampling", COARSE)
+    monkeypatch.setitem(inspect.unwrap(write_interactive_page).__kwdefaults__, "sampling", COARSE)
     monkeypatch.setattr(response, "_LINEAR_SPEEDS", 9)
     # The variant is judged in tests/validation/cross_check.
-    monkeypatch.setitem(comparison.crosscheck.__kwdefaults__, "variant", False)
+    monkeypatch.setitem(inspect.unwrap(comparison.crosscheck).__kwdefaults__, "variant", False)
     monkeypatch.syspath_prepend(tmp_path)
     session: dict[str, object] = {}
     printed = ""

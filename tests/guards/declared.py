@@ -143,6 +143,7 @@ DECLARED: dict[str, tuple[str, str]] = {
     "friction.table.unit_load": ("> 0 N/mm", "without load there is no coefficient"),
     "operating.pinion_speed": ("> 0 rpm and <= 200000 rpm", _DRIVES),
     "operating.pinion_torque": (">= 1e-09 N*m and <= 1e+09 N*m", _TORQUE),
+    "operating.pinion_power": ("> 0 kW and <= 1e+10 kW", "beyond any drive"),
     "operating.brake_torque": ("> 0 N*m and <= 1e+09 N*m or 'balanced'", _TORQUE),
     "operating.speed_range": ("> 0 rpm and <= 200000 rpm", _DRIVES),
     "operating.torque_ripple.0.amplitude": (">= 0 N*m and <= 1e+09 N*m", _TORQUE),
@@ -198,6 +199,8 @@ def with_field(pair: GearPair, path: str, value: object) -> dict[str, Any]:
         data["friction"]["table"] = {"points": [1, 2, 3, 4], "coefficient": [0.05] * 4}
     elif parents[1:2] == ["torque_ripple"]:
         data["operating"]["torque_ripple"] = [{"shaft": "pinion", "order": 1, "amplitude": 1.0}]
+    if leaf == "pinion_power":
+        del data["operating"]["pinion_torque"]
     if leaf in ("tooth", "first_teeth"):
         data["pinion"]["teeth"] = data["gear"]["teeth"] = 1000  # so that the gear has the tooth
     node = data

@@ -162,6 +162,9 @@ COMPUTED = {
 }
 #: Function -> call; refused for a pair with shafts unless springs are asked for.
 REFUSED = {
+    "lumped.averaged_state_space": lambda pair, folder, **held: [
+        getattr(lumped.averaged_state_space(pair, **held), name) for name in "ABCD"
+    ],
     "multibody.monodromy": _of("multibody.monodromy", fidelity="linear"),
     "multibody.power_balance": _of("multibody.power_balance", 1),
     "multibody.speed_sweep": _of(

@@ -92,7 +92,17 @@ def test_inside_every_folder_arrows_form_no_circle() -> None:
 #: What the folders that hold for any periodic system may use of the gear model: nothing that knows gears.
 NO_GEARS = {
     f"lumped.{name}"
-    for name in ("arguments", "cache", "compiler", "errors", "gauss_legendre", "labelling", "typing")
+    for name in (
+        "arguments",
+        "cache",
+        "compiler",
+        "display.progress",
+        "display.result",
+        "errors",
+        "gauss_legendre",
+        "labelling",
+        "typing",
+    )
 }
 
 

@@ -245,6 +245,17 @@ def test_every_dataset_has_its_figure(result, name, kind):
             plt.close(figure)
 
 
+@pytest.mark.parametrize("name", NAMES)
+def test_every_result_has_a_short_text(result, name):
+    """At the prompt a result takes at most twenty lines; xarray and NumPy have texts of their own."""
+    outcome = result(name, "linear")
+    if isinstance(outcome, (xr.Dataset, xr.DataArray, np.ndarray, list)):  # a list is arrays of the table
+        return
+    text = repr(outcome)
+    assert len(text.splitlines()) <= 20, text[:3000]
+    assert len(text) <= 2500, text[:3000]
+
+
 #: Pair with like teeth and contact loss, whose teeth meet again after few cycles.
 HEALTHY = _stated("larger_gear_drives_contact_lost", pinion__teeth=44)
 FIRST_ORDERS = ("steps", "eccentricity")

@@ -39,6 +39,10 @@ NAMES_ELSEWHERE = {
         "lumped/schema/pair.py",
         "centre_distance",
     ): "of other teeth, named first: tests/lumped/schema/test_refusals",
+    (
+        "lumped/schema/operating.py",
+        "pinion_power",
+    ): "beside a torque: tests/lumped/schema/test_operating",
     ("lumped/schema/old_formats.py", "format"): "of a later release: tests/lumped/schema/test_pair",
     (
         "lumped/schema/tolerances.py",

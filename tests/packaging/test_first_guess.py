@@ -8,10 +8,13 @@ import sys
 import tomllib
 from pathlib import Path
 
+import control
 import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 import pytest
+import xarray as xr
+from pydantic import BaseModel
 
 import spurcheck
 from validation.interactive import page
@@ -46,7 +49,7 @@ def test_numbers_of_a_pair_by_their_names(pair: spurcheck.GearPair) -> None:
     load = found.cycle["normal_load"].sum("pair").max() / (80 / pair.geometry.base_radius_pinion)
     assert found.dynamic_factor == pytest.approx(float(load))
     # The trace of M^-1 K is the sum of the squared natural frequencies.
-    frequencies = spurcheck.natural_frequencies(pair)
+    frequencies = spurcheck.natural_frequencies(pair).to_numpy()
     system = spurcheck.periodic_system(pair, "elastic")
     m = len(system.coordinates)
     mean = system.matrices(np.linspace(0.0, system.period, 20001)[:-1] + system.period / 40000).mean(axis=0)
@@ -88,6 +91,49 @@ def test_several_results_share_one_axes(pair: spurcheck.GearPair) -> None:
         np.testing.assert_allclose(line, 1e6 * run["dte"])
     assert [text.get_text() for text in ax.get_legend().get_texts()] == ["80 N m", "40 N m"]
     plt.close(figure)
+
+
+def test_a_star_imports_every_public_name() -> None:
+    names: dict[str, object] = {}
+    exec("from spurcheck import *", names)
+    assert set(dir(spurcheck)) - {"__version__"} == set(names) - {"__builtins__"}
+    assert names["predict"] is spurcheck.predict
+
+
+def test_a_pair_shows_names_for_users_alone(pair: spurcheck.GearPair) -> None:
+    """None of the schema library's own, 31 of them, at any level."""
+    library = {name for name in dir(BaseModel) if not name.startswith("_")}
+    for section in (pair, pair.pinion, pair.operating, pair.mesh, pair.friction):
+        assert library.isdisjoint(dir(section))
+        assert set(type(section).model_fields) <= set(dir(section))
+    assert {"with_", "to_toml", "geometry", "operating"} <= set(dir(pair))
+
+
+def test_natural_frequencies_say_what_they_are(pair: spurcheck.GearPair) -> None:
+    frequencies = spurcheck.natural_frequencies(pair)
+    assert frequencies.attrs["units"] == "Hz"
+    assert frequencies.attrs["gear_pair"] == pair.name
+    np.testing.assert_allclose(
+        60 * frequencies / 19, frequencies["resonant_speed_rpm"]
+    )  # mesh = speed x teeth
+    natural, damping, _ = control.damp(spurcheck.averaged_state_space(pair), doprint=False)
+    order = np.argsort(natural)[::2]  # two poles a mode
+    np.testing.assert_allclose(frequencies, natural[order] / (2 * np.pi), rtol=1e-9)
+    np.testing.assert_allclose(frequencies["damping_ratio"], damping[order], rtol=1e-6)
+
+
+def test_methods_of_a_cross_check_are_the_functions_of_the_multibody_model(
+    pair: spurcheck.GearPair,
+) -> None:
+    check = spurcheck.crosscheck(pair, cycles=8, samples_per_cycle=32, variant=False)
+    balance = check.power_balance(2)
+    assert balance == spurcheck.multibody.power_balance(pair, 2)
+    assert abs(balance.residual) < 1e-6 * balance.driving
+    causes = check.attribution(progress=False)
+    assert set(causes["cause"].values) >= {"all", "contact"}
+    xr.testing.assert_identical(
+        causes["alone"], spurcheck.multibody.attribution(pair, progress=False)["alone"]
+    )
 
 
 def test_help_is_short_and_dir_has_only_names_for_users() -> None:

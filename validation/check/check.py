@@ -10,17 +10,20 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import Enum
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from lumped.arguments import real_number
+from lumped.display.progress import reported_to, shows_progress
+from lumped.display.result import DisplayedResult
 from lumped.errors import NumericalError, refuse
 from lumped.labelling import labelled_dataset
 from lumped.model.averaged import natural_frequencies
 from lumped.model.periodic_system import Supports, with_supports
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
+from lumped.typing import ProgressRequest
 from validation.check.curve_orders import drift
 from validation.check.curves import Curves, Role, ValuesOverSpeed
 from validation.check.ladder import Explanation, Ladder, climb
@@ -84,8 +87,8 @@ class Rung(Enum):
     OVER_SPEED = "over speed"
 
 
-@dataclass(frozen=True, eq=False)
-class Check:
+@dataclass(frozen=True, eq=False, repr=False)
+class Check(DisplayedResult):
     """Another model of a gear pair beside both programs.
 
     Attributes
@@ -103,6 +106,18 @@ class Check:
     ladder : search for explanations; None: the motion agrees, or no explanations were asked for
     remarks : sentences on the curves: what was assumed, what was not compared
     """
+
+    shown: ClassVar = (
+        "verdict",
+        "misfit",
+        "limit",
+        "failed",
+        "name",
+        "role",
+        "discrepancy",
+        "explanations",
+        "remarks",
+    )
 
     pair: GearPair
     name: str
@@ -269,6 +284,7 @@ class Check:
         return self.words
 
 
+@shows_progress("check")
 def check(
     pair: AnyPair,
     theirs: Any,
@@ -278,7 +294,7 @@ def check(
     budget: float = BUDGET,
     phase: float | None = None,
     supports: Supports | None = None,
-    progress: Callable[[float], None] | None = None,
+    progress: ProgressRequest = None,
 ) -> Check:
     """Check curves of another model, or a measured record, against both programs.
 
@@ -294,7 +310,8 @@ def check(
     phase : mesh cycles from the moment when pair A was at A to the first sample; default: by correlation
     supports : "springs", the four of ``bearings``, or "shafts", the elastic ones of ``shafts``; by default
         the shafts of a pair that has them
-    progress : told the done share
+    progress : True (a bar), False (none), None (a bar where the call takes over two seconds), or a function
+        that is called with the finished fraction
 
     Returns
     -------
@@ -305,6 +322,7 @@ def check(
     ParameterError : curves that cannot be read or compared; the text says what to change
     NumericalError : no motion of the pair is found
     """
+    progress = reported_to(progress)
     gear_pair = with_supports(load_gear_pair(pair), supports)
     allowed = real_number("limit", limit, 0.0, 1.0, above=True, action="Give a share: 5 % is 0.05.")
     seconds = real_number("budget", budget, 0.0, unit="s")

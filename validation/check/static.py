@@ -135,7 +135,9 @@ def static_rung(curves: Curves, pair: GearPair) -> StaticRung:
     if "natural_frequencies" in curves.statics:
         theirs = np.sort(real_array("natural_frequencies", curves.statics["natural_frequencies"]).ravel())
         # Without rigid motions.
-        rows += _frequency_rows(theirs[theirs > 1e-6 * theirs[-1]], np.sort(natural_frequencies(healthy)))
+        rows += _frequency_rows(
+            theirs[theirs > 1e-6 * theirs[-1]], np.sort(natural_frequencies(healthy).to_numpy())
+        )
     if "M" in curves.statics or "K" in curves.statics:
         rows += _matrix_rows(curves.statics, healthy)
     for channel in curves.of_quantity("mesh_stiffness"):

@@ -80,7 +80,7 @@ def check(
             budget=budget,
             phase=phase,
             supports=supports,
-            progress=lambda share: tell(share),
+            progress=tell,
         )
     if as_json:
         print_json(_as_json(result))

@@ -107,9 +107,13 @@ def init(
     if teeth is not None:
         if preset != opt.DEFAULT_PAIR or from_rexs is not None:
             raise refuse("--teeth", teeth, "without a preset or REXS file", "Leave one of them out.")
+        fields_set = {field for path in values for field in fields_of(path)}
         for option in fields_by_option:
             if option not in options_set and fields_by_option[option][0] in sizes:
-                raise refuse(option, "missing", "a value beside --teeth", "Give it.")
+                if option == "--torque" and "operating.pinion_power" in fields_set:
+                    continue
+                action = "Give it, or the power: --set 'power=5 kW'." if option == "--torque" else "Give it."
+                raise refuse(option, "missing", "a value beside --teeth", action)
         name = f"pair_{re.sub('[^0-9]+', '_', teeth)}"
         if output is not None and str(output) != "-":
             name = output.stem

@@ -108,6 +108,10 @@ class Once(TyperCommand):
             return super().parse_args(ctx, args)
         except Exception as error:
             usage: Any = error  # an error of usage has its text as an attribute
+            if type(error).__name__ == "NoSuchOption":
+                from validation.commands.hints import about_option
+
+                ctx.fail(f"No such option: {usage.option_name}.{about_option(usage.option_name, ctx)}")
             for pattern, words in _PARSER if hasattr(error, "message") else ():
                 usage.message = re.sub(pattern, words, usage.message)
             raise
@@ -179,6 +183,7 @@ def guarded(command: Callable[..., None]) -> Callable[..., None]:
 
     @functools.wraps(command)
     def run(**kwargs: Any) -> None:
+        from lumped.display.progress import without_bars
         from lumped.errors import LawRangeWarning, ParameterError, SpurcheckError
 
         silent = _quiet.set(bool(kwargs.pop("quiet", False)))
@@ -192,7 +197,7 @@ def guarded(command: Callable[..., None]) -> Callable[..., None]:
                 note(text)
 
         try:
-            with warnings.catch_warnings():
+            with warnings.catch_warnings(), without_bars():  # a command draws its bar itself
                 warnings.simplefilter("always", LawRangeWarning)
                 warnings.showwarning = show
                 made = {
@@ -260,7 +265,7 @@ def note(text: str) -> None:
 @contextmanager
 def progress_bar(text: str) -> Iterator[Progress]:
     """Show a progress bar on stderr while the block runs. Without a terminal nothing is drawn."""
-    from validation.commands.progress import bar_of_stages
+    from lumped.display.terminal_bar import bar_of_stages
 
     with bar_of_stages(stderr()) as bar:
         task = bar.add_task(text, total=1.0)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import xarray as xr
 
@@ -15,12 +16,15 @@ import multibody
 from floquet.gear.motions import GearOrbit
 from lumped import GearPair
 from lumped.arguments import real_number, some_of, whole_number
+from lumped.display.progress import reported_to, shows_progress
+from lumped.display.result import DisplayedResult
 from lumped.errors import SpurcheckError, refuse
 from lumped.model.periodic_system import Supports, on_springs
 from lumped.model.steady import UNSTABLE
 from lumped.schema.files import AnyPair, load_gear_pair
-from lumped.typing import Progress
+from lumped.typing import Progress, ProgressRequest
 from multibody.contact.machine import machine
+from multibody.study.balance import PowerBalance
 from validation.cross_check.agreement import FIDELITIES, QUANTITIES, Agreement, Fidelity, agreement
 from validation.cross_check.conservation import conservation, lumped_motion
 from validation.cross_check.losses import LossAgreement, loss_agreement, sliding_agreement
@@ -47,8 +51,8 @@ _VARIANT_CYCLES = 2
 _VARIANT_SAMPLES = 64
 
 
-@dataclass(frozen=True, eq=False)
-class CrossCheck:
+@dataclass(frozen=True, eq=False, repr=False)
+class CrossCheck(DisplayedResult):
     """Outcome of ``crosscheck``.
 
     Attributes
@@ -69,6 +73,19 @@ class CrossCheck:
     variant : cross-check of a variation of the pair in which nothing is symmetric; None where the caller does
         not want the variant, or where no variation is sound
     """
+
+    shown: ClassVar = (
+        "verdict",
+        "agrees",
+        "periodic",
+        "agreements",
+        "conservation",
+        "stiffness",
+        "loss",
+        "pulling",
+        "failures",
+        "variant",
+    )
 
     pair: GearPair
     agreements: tuple[Agreement, ...]
@@ -113,6 +130,23 @@ class CrossCheck:
         """Whether the multibody model has the motion of the lumped model, within the limits."""
         return self.verdict is Verdict.AGREES
 
+    def attribution(self, *, progress: ProgressRequest = None) -> xr.Dataset:
+        """Return how much each finite-motion effect changes the motion, by ``multibody.attribution``.
+
+        ``progress``: as of ``crosscheck``.
+        """
+        return multibody.attribution(self.pair, supports="springs", progress=progress)
+
+    def power_balance(self, cycles: int = 20, *, fidelity: Fidelity = "exact") -> PowerBalance:
+        """Return the power balance of a run of the multibody model, ``multibody.power_balance``.
+
+        Parameters
+        ----------
+        cycles : mesh cycles of the run
+        fidelity : "exact" or "linear"
+        """
+        return multibody.power_balance(self.pair, cycles, fidelity=fidelity, supports="springs")
+
     def of(self, fidelity: Fidelity) -> tuple[Agreement, ...]:
         """Agreements at one fidelity."""
         return tuple(a for a in self.agreements if a.fidelity == fidelity)
@@ -122,6 +156,7 @@ class CrossCheck:
         return max(self.of(fidelity), key=lambda a: a.difference / a.limit)
 
 
+@shows_progress("cross-check")
 def crosscheck(
     pair: AnyPair,
     *,
@@ -131,7 +166,7 @@ def crosscheck(
     limit: float = LOAD_LIMIT,
     variant: bool = True,
     supports: Supports | None = None,
-    progress: Progress | None = None,
+    progress: ProgressRequest = None,
 ) -> CrossCheck:
     """Compare the lumped model with the multibody model of the same pair in periodic motion.
 
@@ -166,7 +201,8 @@ def crosscheck(
         motions along the line of action agree; for quantities driven by friction the limit is 0.2
     variant : whether to check a variation of the pair in which nothing is symmetric too, with few cycles
     supports : "springs", on which alone both models are compared; needed for a pair with shafts
-    progress : called with the finished fraction
+    progress : True (a bar), False (none), None (a bar where the call takes over two seconds), or a function
+        that is called with the finished fraction
 
     Returns
     -------
@@ -177,6 +213,7 @@ def crosscheck(
     ParameterError : arguments out of range, or shafts
     NumericalError : a model fails; the text says what to try
     """
+    progress = reported_to(progress)
     whole_number("cycles", cycles, 6, 100_000)
     whole_number("samples_per_cycle", samples_per_cycle, 32, 65536)
     limit = real_number("limit", limit, 0.0, 1.0, above=True, action="Give a share: 5 % is 0.05.")

@@ -12,7 +12,7 @@ from typing import Any
 import tomli_w
 
 from lumped.bearings.rolling import across_ratio, assumed_bearing
-from lumped.errors import ParameterError
+from lumped.errors import ParameterError, refuse
 from lumped.fields.units import to_si
 from lumped.friction.registry import LAWS
 from lumped.schema.assumed import ABOUT, WORDS, within
@@ -21,6 +21,7 @@ from lumped.schema.changes import by_fields, fields_of
 from lumped.schema.files import load_gear_pair
 from lumped.schema.gear import STANDARD_FILLET
 from lumped.schema.old_formats import FORMAT
+from lumped.schema.operating import torque_of
 from lumped.schema.own_laws import is_own
 from lumped.schema.pair import GearPair, leaf_paths, stated_unit
 from lumped.stiffness.foundation import thin_rims
@@ -78,7 +79,7 @@ def new_pair(
     module: float | str,
     face_width: float | str,
     speed: float | str,
-    torque: float | str,
+    torque: float | str | None = None,
     changes: Mapping[str, Any] | None = None,
     name: str = "",
     **fields: Any,
@@ -91,7 +92,7 @@ def new_pair(
     module : [mm]
     face_width : of both gears [mm]
     speed : of the pinion [rpm]
-    torque : on the pinion [N m]
+    torque : on the pinion [N m]; None: ``power=`` states the driving power [kW] instead
     changes : further known values, by the names and paths of ``pair.with_``: ``{"oil": "vg220",
         "pinion.profile_shift": 0.4}``. Assumed values of the basic rack follow from known values: the fillet
         radius from pressure angle and dedendum, the dedendum from the addendum
@@ -107,17 +108,22 @@ def new_pair(
         "gears.face_width": face_width,
         "module": module,
         "speed": speed,
-        "torque": torque,
+        **({} if torque is None else {"torque": torque}),
         **(changes or {}),
         **{key.replace("__", "."): value for key, value in fields.items()},
     }
     stated = by_fields(request)
+    if not any(path in stated for path in _LOADS):
+        action = "Give the torque on the pinion [N m], or the driving power: power='5 kW'."
+        raise refuse("torque", "missing", "a torque or a power", action)
     name_of_pair = name or "pair_" + "_".join(str(stated[path]) for path in fields_of("teeth"))
     user_laws = {path: stated.pop(path) for path in list(stated) if is_own(path, stated[path])}
     pair = load_gear_pair(tomllib.loads(new_pair_text(name_of_pair, stated)))
     return pair.with_(user_laws) if user_laws else pair
 
 
+#: Fields that state the load of the pair.
+_LOADS = ("operating.pinion_torque", "operating.pinion_power")
 #: Tangential load over face width and module where a file has no torque [N/m^2]: a moderate load of hardened
 #: steel gears of any size.
 _LOAD_INTENSITY = 20e6
@@ -153,7 +159,7 @@ def new_pair_text(name: str, request: Mapping[str, Any]) -> str:
 
     ``request``: path of the field -> value, for the arguments of ``new_pair``.
     """
-    values = _values(request)
+    values = _with_torque(_values(request))
     pair = _filled({"name": name}, values)
     by_user = [path for path in leaf_paths(pair) if any(within(path, one) for one in values)]
     pair = marked(pair, dict.fromkeys(by_user, GIVEN))
@@ -247,6 +253,15 @@ def _values(request: Mapping[str, Any]) -> dict[str, Any]:
     return values
 
 
+def _with_torque(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the values with the torque in place of a stated power: the assumed bearings follow from it."""
+    torque_path, power_path = _LOADS
+    torque = torque_of(values.get(power_path), values.get("operating.pinion_speed"))
+    if torque is None or torque_path in values:
+        return dict(values)
+    return {path: value for path, value in values.items() if path != power_path} | {torque_path: torque}
+
+
 def parameter_text(mapping: Mapping[str, Any], notes: Sequence[str] = ()) -> str:
     """Write parameters as commented TOML.
 
@@ -325,7 +340,7 @@ def completed(values: Mapping[str, Any]) -> dict[str, Any]:
         full.setdefault("lubricant.viscosity_law.temperature", _TEMPERATURE)
     else:
         full.setdefault("lubricant.viscosity", _VISCOSITY)
-    if "operating.pinion_torque" not in full:
+    if not any(path in full for path in _LOADS):
         module, width = (to_si(full[path], "mm") for path in ("basic_rack.module", "pinion.face_width"))
         radius = 0.5 * module * full["pinion.teeth"]  # of the reference circle
         full["operating.pinion_torque"] = float(f"{_LOAD_INTENSITY * width * module * radius:.3g}")

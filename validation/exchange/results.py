@@ -163,7 +163,7 @@ def write_state_space(
     """
     pair = on_springs(load_gear_pair(pair), supports, "write_state_space")
     path = check_file(file_path("path", path), STATE_SPACE_SUFFIXES, force=force)
-    plant = averaged_state_space(pair, form)
+    plant = averaged_state_space(pair, form, supports="springs")
     matlab = path.suffix.lower() == ".mat"
 
     def names(labels: list[str]) -> np.ndarray[tuple[int], np.dtype[Any]]:

@@ -1,4 +1,4 @@
-"""Numbers as text: significant digits, SI prefixes, powers of ten. Also: reading of texts in TOML files."""
+"""Several numbers as text: ranges, columns, shares. Also: reading of texts in TOML files."""
 
 from __future__ import annotations
 
@@ -9,51 +9,13 @@ from collections.abc import Iterable, Sequence
 from importlib.resources import files
 from typing import Any
 
-_SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-_MINUS = "\u2212"
-#: A number and its unit stay on one line.
-_SPACE = "\u00a0"
+from lumped.display.formatting import MINUS, PREFIXED, PREFIXES, SPACE, SUPERSCRIPT
+from lumped.display.formatting import number as number
+from lumped.display.formatting import prefix_exponent as prefix_exponent
+from lumped.display.formatting import quantity as quantity
+
 #: Mantissa and exponent of a number in computer notation, such as 9.43e-03.
 _EXPONENT = re.compile(r"(?<![\w.])(\d+(?:\.\d+)?)e(-\d+|\+\d{2,})(?!\w)")
-_PREFIXED = frozenset({"m", "N", "Pa", "N/m", "N m", "W", "s", "Hz", "m/s", "N s/m"})
-_PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "µ", -9: "n", -12: "p"}
-
-
-def number(value: float, digits: int = 4, *, measured: bool = False) -> str:
-    """Return a number as text with significant digits, with a power of ten outside 0.001 to 99999.
-
-    Zeros at the end are removed. With ``measured`` they stay, because the number is accurate to all digits.
-    """
-    if not math.isfinite(value):
-        return "n/a"
-    if value == 0.0:
-        return "0"
-    if 1e-3 <= abs(value) < 1e5:
-        # Digits before the point are never rounded away: 16663 stays 16660 at four digits, not 1.666e+04.
-        rounded = abs(float(f"{value:.{digits}g}"))  # 0.99999 to two digits is 1.0
-        places = max(digits - 1 - math.floor(math.log10(rounded)), 0)
-        text = f"{float(f'{value:.{digits}g}'):.{places}f}"
-        text = text.rstrip("0").rstrip(".") if "." in text and not measured else text
-        return text.replace("-", _MINUS)
-    mantissa, exponent = f"{value:.{min(digits, 3) - 1}e}".split("e")
-    return f"{mantissa}{_SPACE}×{_SPACE}10{str(int(exponent)).translate(_SUPERSCRIPT)}".replace("-", _MINUS)
-
-
-def quantity(
-    value: float, unit: str, digits: int = 4, *, measured: bool = False, exponent: int | None = None
-) -> str:
-    """Return an SI number and its unit as text, with an SI prefix where a prefix is usual.
-
-    ``exponent``: exponent of ten of the prefix; by default the prefix follows from the number. ``digits`` and
-    ``measured``: as in ``number``.
-    """
-    if unit == "1" or value == 0.0:  # zero is printed without a unit
-        return number(value, digits, measured=measured)
-    if unit in _PREFIXED and math.isfinite(value):
-        exponent = prefix_exponent(value, digits) if exponent is None else exponent
-        value = value / 10.0**exponent
-        unit = f"{_PREFIXES[exponent]}{unit}"
-    return f"{number(value, digits, measured=measured)}{_SPACE}{unit.replace(' ', _SPACE)}"
 
 
 def span(low: float, high: float, unit: str, digits: int = 2) -> str:
@@ -65,19 +27,12 @@ def span(low: float, high: float, unit: str, digits: int = 2) -> str:
     exponent = prefix_exponent(largest, digits) if largest else None
     for more in range(digits, digits + 3):
         first, last = (
-            quantity(end, unit, more, measured=True, exponent=exponent).partition(_SPACE)
+            quantity(end, unit, more, measured=True, exponent=exponent).partition(SPACE)
             for end in (low, high)
         )
         if first[0] != last[0]:
             break
     return f"{first[0]} to {''.join(last)}"
-
-
-def prefix_exponent(value: float, digits: int = 4) -> int:
-    """Return the exponent of ten of the SI prefix with which a nonzero number is printed as 1 to 999."""
-    exponent = min(max(3 * math.floor(math.log10(abs(value)) / 3), -12), 9)
-    rounded = abs(float(f"{value / 10.0**exponent:.{digits}g}"))
-    return exponent + 3 if rounded >= 1000.0 and exponent < 9 else exponent  # 999.99 rounds to 1000
 
 
 def common_exponent(values: Sequence[float], digits: int = 4) -> int | None:
@@ -108,17 +63,17 @@ def side_by_side(
     """
     values = [float(value) for value in values]
     largest = max(map(abs, list(beside) or values), default=0.0)
-    name = "" if unit == "1" else f"{_SPACE}{unit.replace(' ', _SPACE)}"
+    name = "" if unit == "1" else f"{SPACE}{unit.replace(' ', SPACE)}"
     factor = 1.0
-    if unit in _PREFIXED and largest > 0.0:
+    if unit in PREFIXED and largest > 0.0:
         exponent = prefix_exponent(largest, digits)
         factor = 10.0**exponent
-        name = f"{_SPACE}{_PREFIXES[exponent]}{unit}"
+        name = f"{SPACE}{PREFIXES[exponent]}{unit}"
     scaled = [value / factor for value in values]
     size = max(map(abs, scaled), default=0.0)
     first = digits - 1 - math.floor(math.log10(size)) if size > 0.0 else 0
     for places in range(max(first, 0), max(first, 0) + 4):
-        texts = [f"{round(value, places) + 0.0:.{places}f}".replace("-", _MINUS) for value in scaled]
+        texts = [f"{round(value, places) + 0.0:.{places}f}".replace("-", MINUS) for value in scaled]
         if len(set(texts)) == len(set(values)):
             break
     return texts, name
@@ -136,8 +91,8 @@ def _plain(match: re.Match[str]) -> str:
         _, _, decimals = mantissa.partition(".")
         places = max(len(decimals) - exponent, 0)
         return f"{float(match[0]):.{places}f}"
-    factor = "" if mantissa == "1" else f"{mantissa}{_SPACE}×{_SPACE}"
-    return f"{factor}10{str(exponent).translate(_SUPERSCRIPT)}"
+    factor = "" if mantissa == "1" else f"{mantissa}{SPACE}×{SPACE}"
+    return f"{factor}10{str(exponent).translate(SUPERSCRIPT)}"
 
 
 def read_table(folder: str, file: str) -> dict[str, Any]:

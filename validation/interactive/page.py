@@ -14,10 +14,11 @@ from markupsafe import Markup
 from floquet.gear.axes import operating_rpm
 from lumped import GearPair, load_gear_pair
 from lumped.arguments import file_path, of_type
+from lumped.display.progress import reported_to, shows_progress
 from lumped.errors import refuse
 from lumped.friction.registry import law_of
 from lumped.model.periodic_system import Supports, on_springs
-from lumped.typing import Progress
+from lumped.typing import ProgressRequest
 from validation.files.output import write_dataset, write_text
 from validation.interactive.payload import payload, script_json
 from validation.interactive.results import FINE, PageResults, Sampling, compute
@@ -26,6 +27,7 @@ from validation.interactive.results import FINE, PageResults, Sampling, compute
 _SCRIPTS = ("data.js", "chart.js", "stability.js", "sweep.js", "start.js")
 
 
+@shows_progress("interactive page")
 def write_interactive_page(
     pair: GearPair | str | Path,
     path: str | Path,
@@ -34,7 +36,7 @@ def write_interactive_page(
     new: bool = False,
     sampling: Sampling = FINE,
     supports: Supports | None = None,
-    progress: Progress | None = None,
+    progress: ProgressRequest = None,
 ) -> Path:
     """Write the interactive page of a gear pair and, as NetCDF, every number on it.
 
@@ -46,7 +48,8 @@ def write_interactive_page(
     new : if true, existing files of these names are not replaced
     sampling : numbers of points of charts and responses
     supports : "springs", the only supports of this computation; needed for a pair with shafts
-    progress : called with the finished fraction and what is being done
+    progress : True (a bar), False (none), None (a bar where the call takes over two seconds), or a function
+        that is called with the finished fraction and what is being done
 
     Returns
     -------
@@ -58,6 +61,7 @@ def write_interactive_page(
     NumericalError : a computation fails; the text says what to try
     StorageError : a file cannot be written, or with ``new`` is there already
     """
+    progress = reported_to(progress)
     pair = on_springs(load_gear_pair(pair), supports, "write_interactive_page").healthy
     of_type("sampling", sampling, Sampling, "a Sampling")
     page = file_path("path", path)

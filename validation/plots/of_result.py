@@ -9,12 +9,16 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from floquet.gear.response import ResponseBranches
+from floquet.gear.tongues import StabilityMargins
+from lumped.display.result import DisplayedResult
 from lumped.errors import refuse
 from lumped.fields.text_file import parse_toml
 from lumped.fields.units import to_stated
 from lumped.model.averaged import natural_frequencies
 from lumped.schema.files import load_gear_pair
 from lumped.schema.pair import GearPair
+from validation.cross_check.comparison import CrossCheck
 from validation.plots.axes import cycle_figure, label_axis
 from validation.plots.compare import compare_figure
 from validation.plots.contact_loss import jump_map_figure, response_figure
@@ -62,7 +66,7 @@ def _boundaries(result: xr.Dataset) -> Figure:
 
 def _waterfall(result: xr.Dataset) -> Figure:
     supports = result.attrs.get("supports")
-    return waterfall_figure(result, natural_frequencies(_pair(result), supports=supports))
+    return waterfall_figure(result, natural_frequencies(_pair(result), supports=supports).values.tolist())
 
 
 def _spectrum(result: xr.Dataset) -> Figure:
@@ -117,12 +121,12 @@ def plot(result: Any, *, ax: Axes | None = None, labels: Sequence[str] = ()) -> 
 
     Parameters
     ----------
-    result : of ``predict``; dataset of ``simulate`` or ``steady_state`` of either model, ``run_up``,
-        ``waterfall``, ``order_spectrum``, ``speed_sweep``, ``mesh_stiffness``, ``static_transmission_error``,
-        ``static_sharing``, ``stability_chart`` (one or two axes), ``stability_boundaries`` over an axis,
-        ``campbell``, ``jump_map`` or
-        ``response_branches``, or an ``overlay`` of a check. A list of results of one kind over
-        time, phase or speed: their transmission errors, mesh stiffnesses or spectral radii
+    result : of ``predict``, ``crosscheck``, ``check``, ``reference`` or ``response_branches``; dataset of
+        ``simulate`` or ``steady_state`` of either model, ``run_up``, ``waterfall``, ``order_spectrum``,
+        ``speed_sweep``, ``mesh_stiffness``, ``static_transmission_error``, ``static_sharing``,
+        ``stability_chart`` (one or two axes), ``stability_boundaries`` over an axis, ``campbell`` or
+        ``jump_map``, or an ``overlay`` of a check. A list of results of one kind over time, phase or speed:
+        their transmission errors, mesh stiffnesses or spectral radii
     ax : axes of yours to draw this curve into
     labels : of the results, for the legend; default the names of their pairs
 
@@ -135,7 +139,11 @@ def plot(result: Any, *, ax: Axes | None = None, labels: Sequence[str] = ()) -> 
     ParameterError : another dataset, more axes than a figure has, or results that cannot share one axes
     """
     several = isinstance(result, (list, tuple))
-    results = [one.cycle if isinstance(one, Prediction) else one for one in (result if several else [result])]
+    if isinstance(result, DisplayedResult) and type(result).plot is not DisplayedResult.plot and ax is None:
+        return result.plot()  # of a package above this one
+    if isinstance(result, CrossCheck) and ax is None:
+        return _curves([result.lumped, *result.multibody.values()], None, ["lumped", *result.multibody])
+    results = [_dataset(one) for one in (result if several else [result])]
     for one in results:
         if not isinstance(one, xr.Dataset):
             allowed = "a dataset, as simulate returns it, or a list of them"
@@ -148,6 +156,13 @@ def plot(result: Any, *, ax: Axes | None = None, labels: Sequence[str] = ()) -> 
             return draw(results[0])
     allowed = "a result of simulate, steady_state, speed_sweep, stability_chart or campbell"
     raise refuse("result", ", ".join(map(str, one.data_vars)), allowed, "Draw it with xarray's own .plot().")
+
+
+def _dataset(result: Any) -> Any:
+    """Return the dataset that a result has for a figure; anything else as it is."""
+    if isinstance(result, Prediction):
+        return result.cycle
+    return result.dataset if isinstance(result, (ResponseBranches, StabilityMargins)) else result
 
 
 def _is_main(result: xr.Dataset, variable: str) -> bool:

@@ -26,12 +26,13 @@ from scipy.stats import binomtest
 import lumped
 from floquet.orbits.deadline import Deadline
 from lumped.arguments import real_number, whole_number
+from lumped.display.progress import reported_to, shows_progress
 from lumped.errors import LawRangeWarning, NumericalError, SpurcheckError, refuse
 from lumped.labelling import Variable, labelled_dataset, provenance
 from lumped.model.periodic_system import Supports, supports_of, with_supports
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair, leaf_paths
-from lumped.typing import FloatArray, Progress
+from lumped.typing import FloatArray, ProgressRequest
 from validation.files.formatting import side_by_side
 from validation.prediction.inputs import Input, uncertain_inputs
 from validation.prediction.motion import QUANTITIES, Motion, predicted
@@ -94,6 +95,7 @@ class _Draw:
     inputs: dict[int, Input] = field(default_factory=dict)
 
 
+@shows_progress("comparison")
 def compare(
     pair: AnyPair,
     *others: AnyPair,
@@ -102,7 +104,7 @@ def compare(
     seed: int = 1,
     supports: Supports | None = None,
     seconds: float | None = None,
-    progress: Progress | None = None,
+    progress: ProgressRequest = None,
 ) -> xr.Dataset:
     """Return the share of all possible machines in which one variant of a gear pair is better than another.
 
@@ -119,7 +121,8 @@ def compare(
     supports : "springs" leaves shafts and their inputs out; by default the shafts of a variant that has them
     seconds : processor time after which no further machine begins [s]; a third of the time is for the inputs
         alone. ``LEAST_SAMPLES`` machines are always computed. None: all machines are computed
-    progress : called with the finished fraction
+    progress : True (a bar), False (none), None (a bar where the call takes over two seconds), or a function
+        that is called with the finished fraction
 
     Returns
     -------
@@ -145,6 +148,7 @@ def compare(
     ParameterError : fewer than two variants, two equal ones, a spread that cannot be read, no uncertain input
     NumericalError : a variant as given, or half of the samples, have no prediction
     """
+    progress = reported_to(progress)
     pairs = [with_supports(load_gear_pair(one), supports) for one in (pair, *others)]
     texts = _names(pairs, names)
     samples = whole_number("samples", samples, 16, 65536)

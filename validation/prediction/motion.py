@@ -14,11 +14,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from enum import Enum
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 import xarray as xr
 
+from lumped.display.progress import shows_progress
+from lumped.display.result import DisplayedResult
 from lumped.errors import NumericalError
 from lumped.model.periodic_system import Supports, with_supports
 from lumped.model.results import PlainMotion, peak_to_peak, plain
@@ -27,8 +29,11 @@ from lumped.model.steady import UNSTABLE
 from lumped.model.steady_state import periodic_motion
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
-from lumped.typing import FloatArray
+from lumped.typing import FloatArray, ProgressRequest
 from validation.signals.complex_orders import orders_of_period
+
+if TYPE_CHECKING:
+    from validation.signals.orders import Shaft
 
 #: Samples in a mesh cycle of a pair with like teeth.
 _SAMPLES = 512
@@ -55,8 +60,8 @@ class Motion(Enum):
         return self.value
 
 
-@dataclass(frozen=True, eq=False)
-class Prediction:
+@dataclass(frozen=True, eq=False, repr=False)
+class Prediction(DisplayedResult):
     """The predicted motion of a pair at its operating point.
 
     Attributes
@@ -68,9 +73,39 @@ class Prediction:
     stable : whether the motion returns after a small disturbance, by the multipliers of the motion; for
         unlike teeth by the multipliers of the twin with like teeth
     mesh_cycles : mesh cycles in the period of the motion
-    losses : place of ``PLACES`` -> mean power lost there [W]; empty: the motion is not periodic
+    losses : mean power lost at each place of ``PLACES`` [W]; empty: the motion is not periodic
     reason : why the linear motion stands in for the motion with unilateral contact; empty: it does not
     """
+
+    shown: ClassVar = (
+        "motion",
+        "reason",
+        "peak_to_peak",
+        "dynamic_factor",
+        "tooth_load",
+        "least_force",
+        "contact_lost",
+        "efficiency",
+        "loss",
+        "losses",
+        "input_power",
+        "bearing_rms",
+        "bearing_orders",
+        "static_force",
+        "stable",
+        "mesh_cycles",
+    )
+    instead: ClassVar = {
+        "dte": "transmission_error",
+        "save": "write_results(prediction.cycle, 'motion.nc')",
+        "summary": "numbers, or print the prediction",
+        "power_loss": "loss",
+        "force": "mesh_force",
+        "speed": "pair.operating.pinion_speed",
+        "torque": "pair.operating.pinion_torque",
+        "power_balance": "crosscheck(pair).power_balance()",
+        "waterfall": "spurcheck.waterfall(spurcheck.run_up(pair, (500, 3000)))",
+    }
 
     pair: GearPair
     motion: Motion
@@ -156,6 +191,29 @@ class Prediction:
         """(``ORDERS``,) amplitudes of a variable of ``cycle`` at the mesh orders 1, 2, ..."""
         return mesh_orders(self.plain.values[name], self.mesh_cycles)
 
+    def spectrum(self, shaft: Shaft = "mesh", variable: str = "dte") -> xr.Dataset:
+        """Return the amplitudes of a variable of ``cycle`` over the orders of a shaft, by ``order_spectrum``.
+
+        Parameters
+        ----------
+        shaft : "mesh", "pinion" or "gear"
+        variable : of ``cycle``, over time alone
+
+        Raises
+        ------
+        ParameterError : another shaft, or no variable over time
+        """
+        from validation.signals.orders import order_spectrum
+
+        return order_spectrum(self.cycle, shaft, variable=variable)
+
+    def to_dataset(self) -> xr.Dataset:
+        """Return ``cycle`` with the numbers of ``QUANTITIES`` as variables without dimension."""
+        labels = {name: {"units": unit, "long_name": words} for name, (unit, words) in QUANTITIES.items()}
+        numbers = {name: ((), value, labels[name]) for name, value in self.numbers.items()}
+        attributes = {"motion": self.motion.text, "reason": self.reason}
+        return self.cycle.assign(numbers).assign_attrs(attributes)
+
     @property
     def numbers(self) -> dict[str, float]:
         """The scalar results by name, in SI. ``QUANTITIES`` has units and plain names."""
@@ -195,7 +253,10 @@ QUANTITIES = {
 }
 
 
-def predict(pair: AnyPair, *, supports: Supports | None = None) -> Prediction:
+@shows_progress("prediction")
+def predict(
+    pair: AnyPair, *, supports: Supports | None = None, progress: ProgressRequest = None
+) -> Prediction:
     """Return the prediction for a pair at its operating point: the best motion of the program, and its
     numbers.
 
@@ -210,6 +271,8 @@ def predict(pair: AnyPair, *, supports: Supports | None = None) -> Prediction:
     pair : gear pair, preset name or parameter file
     supports : "springs", the four of ``bearings``, or "shafts", the elastic ones of ``shafts``; by default
         the shafts of a pair that has them
+    progress : True (a bar), False (none), None (a bar where the call takes over two seconds), or a function
+        that is called with the finished fraction, here at the end
 
     Returns
     -------
@@ -220,7 +283,10 @@ def predict(pair: AnyPair, *, supports: Supports | None = None) -> Prediction:
     ParameterError : a refused parameter
     NumericalError : no motion was found, or it does not stay bounded
     """
-    return predicted(with_supports(load_gear_pair(pair), supports))
+    result = predicted(with_supports(load_gear_pair(pair), supports))
+    if callable(progress):
+        progress(1.0)
+    return result
 
 
 def dynamic_factor(pair: AnyPair, *, supports: Supports | None = None) -> float:

@@ -23,6 +23,7 @@ from scipy.stats import binom, qmc, rankdata
 import lumped
 from floquet.orbits.deadline import Deadline
 from lumped.arguments import real_number, whole_number
+from lumped.display.progress import reported_to, shows_progress
 from lumped.errors import LawRangeWarning, NumericalError, SpurcheckError, refuse
 from lumped.labelling import Variable, labelled_dataset, provenance
 from lumped.model.periodic_system import Supports, supports_of, with_supports
@@ -31,7 +32,7 @@ from lumped.model.sweep import systems_over_speed
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.meeting_teeth import period_of
 from lumped.schema.pair import GearPair
-from lumped.typing import FloatArray, Progress
+from lumped.typing import FloatArray, ProgressRequest
 from validation.prediction.inputs import Input, forms_beside, uncertain_inputs
 from validation.prediction.motion import ORDERS, QUANTITIES, Motion, Prediction, predicted
 from validation.signals.averages import GEARS, sidebands
@@ -107,6 +108,7 @@ class Varied:
     asked: int = 0
 
 
+@shows_progress("uncertain inputs")
 def uncertainty(
     pair: AnyPair,
     samples: int = 128,
@@ -114,7 +116,7 @@ def uncertainty(
     *,
     supports: Supports | None = None,
     seconds: float | None = None,
-    progress: Progress | None = None,
+    progress: ProgressRequest = None,
 ) -> xr.Dataset:
     """Return how the prediction varies when every uncertain input takes any value of its range.
 
@@ -127,7 +129,8 @@ def uncertainty(
     supports : "springs" leaves shafts and their inputs out; by default the shafts of a pair that has them
     seconds : processor time after which no further sample begins [s]; a third of the time is for the inputs
         alone. None: all samples are computed
-    progress : called with the finished fraction
+    progress : True (a bar), False (none), None (a bar where the call takes over two seconds), or a function
+        that is called with the finished fraction
 
     Returns
     -------
@@ -157,6 +160,7 @@ def uncertainty(
     ParameterError : a spread that cannot be read, or no uncertain input
     NumericalError : the pair as given has no prediction, or fewer than half of the samples have one
     """
+    progress = reported_to(progress)
     pair = with_supports(load_gear_pair(pair), supports)
     samples = whole_number("samples", samples, 16, 65536)
     inputs = uncertain_inputs(pair)

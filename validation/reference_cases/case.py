@@ -7,10 +7,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, overload
+from typing import TYPE_CHECKING, ClassVar, overload
 
 from lumped import GearPair
 from lumped.arguments import nearest
+from lumped.display.result import DisplayedResult
 from lumped.errors import refuse
 from lumped.fields.text_file import parse_toml
 from lumped.schema.files import load_gear_pair
@@ -30,8 +31,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-@dataclass(frozen=True, eq=False)
-class ReferenceCase:
+@dataclass(frozen=True, eq=False, repr=False)
+class ReferenceCase(DisplayedResult):
     """Reference case: a gear pair or an equation, its periodic motion, and how well other ways reach it.
 
     Attributes
@@ -52,6 +53,19 @@ class ReferenceCase:
     mesh_period : mesh cycle [s]
     start : state at t = 0: variable -> value in SI; empty on shafts, which have states of their own
     """
+
+    shown: ClassVar = (
+        "name",
+        "description",
+        "frequent_fault",
+        "source",
+        "curves_from",
+        "mesh_cycles",
+        "samples_per_cycle",
+        "mesh_period",
+        "start",
+        "licence",
+    )
 
     name: str
     description: str

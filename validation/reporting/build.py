@@ -16,11 +16,13 @@ import xarray as xr
 
 from lumped import GearPair, LawRangeWarning, load_gear_pair
 from lumped.arguments import file_path, real_number
+from lumped.display.progress import reported_to, shows_progress
+from lumped.display.result import DisplayedResult
 from lumped.errors import refuse
 from lumped.labelling import source_hash
 from lumped.model.periodic_system import Supports, with_supports
 from lumped.outcomes import Absent, Outcome
-from lumped.typing import Progress
+from lumped.typing import Progress, ProgressRequest
 from validation.check.curves import Curves
 from validation.check.reading.reader import read
 from validation.check.record.channel import Record
@@ -42,8 +44,8 @@ from validation.reporting.results import Results
 from validation.reporting.tables import write_tables
 
 
-@dataclass(frozen=True)
-class Report:
+@dataclass(frozen=True, repr=False)
+class Report(DisplayedResult):
     """A report that was written.
 
     Attributes
@@ -66,6 +68,7 @@ class Report:
     record: RecordComparison | None = None
 
 
+@shows_progress("report")
 def report(
     pair: GearPair | str | Path,
     out: str | Path,
@@ -77,7 +80,7 @@ def report(
     tolerance: float = TOLERANCE,
     name: str = "",
     supports: Supports | None = None,
-    progress: Progress | None = None,
+    progress: ProgressRequest = None,
     early: Callable[[str, Sequence[Number]], None] | None = None,
 ) -> Report:
     """Write the verification report of a gear pair into a folder.
@@ -101,7 +104,8 @@ def report(
     name : how commands name the pair, its file or preset; default the pair's name
     supports : "springs" leaves shafts out; by default the shafts of a pair that has them, where a chapter
         does not say that it is about springs
-    progress : called with the finished fraction and what is being done
+    progress : True (a bar), False (none), None (a bar where the call takes over two seconds), or a function
+        that is called with the finished fraction and what is being done
     early : called with the title and the numbers that need neither samples nor charts, once they are known
 
     Raises
@@ -109,6 +113,7 @@ def report(
     ParameterError : a refused parameter or output folder, before any work
     NumericalError : a model fails; the text says what to try
     """
+    progress = reported_to(progress)
     started = time.perf_counter()
     source_hash()  # of the source that runs: an edit of it meanwhile makes no other one of it
     tell: Progress = progress or (lambda fraction, stage="", /: None)

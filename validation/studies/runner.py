@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from lumped.arguments import file_path, of_type, real_number
+from lumped.display.progress import shows_progress
 from lumped.errors import refuse
 from validation.files.output import write_dataset
 from validation.stop_signals import stopping_as_interrupt
@@ -54,6 +55,7 @@ class Summary:
         return sum(number for status, number in self.statuses if status.failed)
 
 
+@shows_progress("cases", counts=True)
 def run_sweep(
     study: Study,
     folder: str | Path,
@@ -63,7 +65,7 @@ def run_sweep(
     resume: bool = False,
     retry_failed: bool = False,
     case_seconds: float | None = None,
-    progress: Progress | None = None,
+    progress: Progress | bool | None = None,
 ) -> Summary:
     """Compute every case of a study into a folder.
 
@@ -79,7 +81,8 @@ def run_sweep(
     retry_failed : with ``resume``, also compute the failed cases again
     case_seconds : longest time of a case [s]; with it, cases run in worker processes of this machine (one
         with ``workers`` = 0), which are ended when a case is late
-    progress : called with (computed, to compute, failed)
+    progress : True (a bar), False (none), None (a bar where the call takes over two seconds), or a function
+        that is called with (computed, to compute, failed)
 
     Raises
     ------
@@ -112,7 +115,7 @@ def run_sweep(
             store.add(chunk)
             done += len(chunk.rows)
             failed += sum(code >= Status.REFUSED for _, code, _, _ in chunk.rows)
-            if progress is not None:
+            if callable(progress):
                 progress(done, number, failed)
         table = store.table()
         write_dataset(results_dataset(cases, table), root / RESULTS)

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from lumped import GearPair, Geometry
 from lumped.arguments import of_type
+from lumped.display.result import DisplayedResult
 from lumped.errors import refuse
 from lumped.friction.registry import law_of
 from lumped.model.results import LOAD_NOISE, farthest_reversal
@@ -44,8 +45,8 @@ State = Literal["ok", "warning", "violated"]
 _ABOUT = read_table("validation.validity", "flags.toml")
 
 
-@dataclass(frozen=True)
-class Flag:
+@dataclass(frozen=True, repr=False)
+class Flag(DisplayedResult):
     """One assumption of the model, checked.
 
     Attributes

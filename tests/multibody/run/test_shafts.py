@@ -169,7 +169,9 @@ def stiff(pair):
         }
     shafts = pair.with_(shafts={"damping_ratio": 0.0, **tables}).shafts
     rigid = {name: getattr(shafts, name).model_copy(update={"youngs_modulus": 1e15}) for name in tables}
-    return pair.model_copy(update={"shafts": shafts.model_copy(update=rigid)}), springs
+    sections = {name: getattr(pair, name) for name in type(pair).model_fields}
+    sections["shafts"] = shafts.model_copy(update=rigid)
+    return type(pair).model_construct(**sections), springs
 
 
 @pytest.mark.parametrize("fidelity", ["linear", "exact"])

@@ -1,5 +1,6 @@
 """Does the command do what its help says, and refuse bad input with one message and the right exit code?"""
 
+import inspect
 import json
 import math
 import re
@@ -247,7 +248,7 @@ def test_a_run_up_prints_where_each_order_is_largest(tmp_path):
 
 def test_stability_and_crosscheck_print_their_verdicts(monkeypatch):
     # The variant is judged in tests/validation/cross_check.
-    monkeypatch.setitem(comparison.crosscheck.__kwdefaults__, "variant", False)
+    monkeypatch.setitem(inspect.unwrap(comparison.crosscheck).__kwdefaults__, "variant", False)
     stable = json.loads(run("stability", "--json").stdout)
     assert (stable["verdict"], stable["margin"]) == ("stable", 1.0 - stable["spectral_radius"])
     check = run("crosscheck", "--json", "--cycles", 6, "--samples", 64)

@@ -3,6 +3,7 @@
 import base64
 import dataclasses
 import hashlib
+import inspect
 import json
 import re
 from html.parser import HTMLParser
@@ -179,11 +180,13 @@ def test_the_same_pair_gives_the_same_page(pair, results):
 @pytest.fixture
 def tiny(monkeypatch):
     """Coarse pages: these tests look at files, not at numbers."""
-    monkeypatch.setattr(page.write_interactive_page, "__kwdefaults__", _defaults(sampling=TINY))
+    monkeypatch.setattr(
+        inspect.unwrap(page.write_interactive_page), "__kwdefaults__", _defaults(sampling=TINY)
+    )
 
 
 def _defaults(**changes):
-    return page.write_interactive_page.__kwdefaults__ | changes
+    return inspect.unwrap(page.write_interactive_page).__kwdefaults__ | changes
 
 
 def test_the_command_writes_page_and_data_and_does_not_overwrite(tiny, tmp_path):

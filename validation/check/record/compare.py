@@ -17,7 +17,7 @@ import numpy as np
 
 from lumped.errors import refuse
 from lumped.fields.units import to_stated
-from lumped.schema.pair import GearPair
+from lumped.schema.pair import GearPair, stated_unit
 from lumped.typing import BoolArray, ComplexArray, FloatArray
 from validation.check.curve_orders import (
     BIN,
@@ -122,8 +122,10 @@ def check_record(record: Curves, pair: GearPair) -> None:
     for name, recorded in (("pinion_speed", record.pinion_speed), ("pinion_torque", record.pinion_torque)):
         operating = float(getattr(pair.operating, name))
         if recorded is not None and abs(recorded / operating - 1.0) > _SAME:
+            unit = str(stated_unit(f"operating.{name}"))
+            theirs, ours = (f"{to_stated(one, unit):.5g} {unit}" for one in (recorded, operating))
             action = "Give the speed and the torque of the record to the pair."
-            raise refuse(f"record.{name}", f"{recorded:.5g}", f"{operating:.5g} within 1 %, SI", action)
+            raise refuse(f"record.{name}", theirs, f"{ours} within 1 %", action)
     if resolved_orders(nominal_cycles(record, pair)) < 1:
         refused = f"{record.places.size} samples"
         raise refuse("data", refused, "several in each mesh cycle", "Sample faster, or longer.")

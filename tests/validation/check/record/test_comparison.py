@@ -309,8 +309,8 @@ def test_samples_of_another_speed_are_refused_with_that_speed(speed_error):
 
 
 @pytest.mark.parametrize(("changes", "match"), [
-    ({"pinion_speed": 314.2}, "pinion_speed"),
-    ({"pinion_torque": 81.7}, "pinion_torque"),
+    ({"pinion_speed": 100.0 * np.pi}, r"pinion_speed = 3000 rpm: allowed 1450 rpm within 1 %"),
+    ({"pinion_torque": 81.7}, r"pinion_torque = 81\.7 N\*m: allowed 80 N\*m within 1 %"),
 ])  # fmt: skip
 def test_a_record_of_something_else_is_refused(changes, match):
     prediction = motion_of("19/41")

@@ -10,13 +10,14 @@ import pytest
 from rich.progress import Progress
 from rich.text import Text
 
-from validation.commands import progress, terminal
+from lumped.display import terminal_bar
+from validation.commands import terminal
 from validation.commands.terminal import PlainConsole, progress_bar
 
 
 def test_a_step_says_how_long_nothing_has_changed() -> None:
     now = [100.0]
-    bar = Progress(progress.StageColumn(lambda: now[0]), disable=True)
+    bar = Progress(terminal_bar.StageColumn(lambda: now[0]), disable=True)
     task = bar.add_task("report", total=1.0)
     column = bar.columns[0]
 
