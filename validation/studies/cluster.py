@@ -96,9 +96,11 @@ def open_cluster(
             _refuse_no_scheduler(address)
         try:
             client = distributed.Client(scheduler, timeout=ANSWER_SECONDS, set_as_default=False)
+            cluster = Cluster(opened.enter_context(client), address, wait, tell)
+        except SpurcheckError:
+            raise
         except Exception as error:
             raise _no_answer(address, error) from error
-        cluster = Cluster(opened.enter_context(client), address, wait, tell)
         opened.callback(cluster.shutdown, wait=False)
         yield cluster
 
@@ -160,13 +162,19 @@ def _no_answer(address: str, error: Exception) -> ParameterError:
 @contextmanager
 def _dask_messages_hidden() -> Iterator[None]:
     """Hide what Dask logs in this process about lost workers: this module says what matters."""
-    logger = logging.getLogger("distributed")
-    level = logger.level
-    logger.setLevel(logging.CRITICAL + 1)
+    loggers = [
+        logging.getLogger(name)
+        for name in logging.root.manager.loggerDict
+        if name.split(".")[0] == "distributed"
+    ]
+    levels = [logger.level for logger in loggers]
+    for logger in loggers:
+        logger.setLevel(logging.CRITICAL + 1)
     try:
         yield
     finally:
-        logger.setLevel(level)
+        for logger, level in zip(loggers, levels, strict=True):
+            logger.setLevel(level)
 
 
 def with_these_versions(
@@ -252,12 +260,14 @@ class Cluster(Executor):
         with self._lock:
             if self._unfinished.pop(future, None) is None:
                 return
+        error: BaseException | None
+        result = None
         try:
             error = remote.exception()
-            result = None if error is not None else remote.result()
-        except BaseException as lost:  # noqa: BLE001  (a cancelled call raises an error outside Exception)
-            error = lost
-            result = None
+            if error is None:
+                result = remote.result()
+        except (asyncio.CancelledError, Exception) as lost:  # noqa: BLE001  (raised, not returned: no answer)
+            error = ClusterStopped(self._silent_scheduler(type(lost).__name__))
         try:
             if error is None:
                 future.set_result(result)
@@ -321,10 +331,7 @@ class Cluster(Executor):
             try:
                 self._threads = self._threads_now()
             except Exception as error:  # noqa: BLE001  (each transport of Dask has errors of its own)
-                self._stop(
-                    f"The scheduler {self.address} does not answer any more ({type(error).__name__}): start "
-                    "it again, or compute on this machine."
-                )
+                self._stop(self._silent_scheduler(type(error).__name__))
                 return
             if self._threads:
                 seen = time.monotonic()
@@ -339,6 +346,12 @@ class Cluster(Executor):
                     f"{self.address} has lost all workers: waiting for another for up to "
                     f"{self._wait_seconds:g} s."
                 )
+
+    def _silent_scheduler(self, reason: str) -> str:
+        return (
+            f"The scheduler {self.address} does not answer any more ({reason}): start it again, or compute "
+            "on this machine."
+        )
 
     def _stop(self, reason: str) -> None:
         """End all calls that are not finished, with the reason."""
