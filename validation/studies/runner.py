@@ -104,7 +104,7 @@ def run_sweep(
         _opened(root, cases, resume) as store,
     ):
         status = store.table().status
-        todo = np.flatnonzero((status == Status.MISSING) | (retry_failed & (status >= Status.REFUSED)))
+        todo = np.flatnonzero((status == Status.MISSING) | (retry_failed & Status.failed_among(status)))
         number = todo.size
         evaluator = StudyEvaluator.of(study)
         done = 0
@@ -113,7 +113,7 @@ def run_sweep(
         for chunk in chunks_of(evaluator, cases.values, numbers, number, pool, case_seconds):
             store.add(chunk)
             done += len(chunk.rows)
-            failed += sum(code >= Status.REFUSED for _, code, _, _ in chunk.rows)
+            failed += sum(Status(code).failed for _, code, _, _ in chunk.rows)
             if progress is not None:
                 progress(done, number, failed)
         table = store.table()

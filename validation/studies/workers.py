@@ -21,6 +21,7 @@ from typing import Any
 import pebble
 
 from lumped.errors import LawRangeWarning, ParameterError, SpurcheckError, refuse
+from validation.studies.analyses import LinearMotion
 from validation.studies.cases import StudyEvaluator
 from validation.studies.cluster import MOST_WORKERS, ONE_THREAD, Cluster, ClusterStopped, other_versions
 from validation.studies.store import Chunk, Status, provenance
@@ -59,6 +60,8 @@ def evaluate_chunk(
                 continue
             if any(issubclass(w.category, LawRangeWarning) for w in caught):
                 status = Status.OUTSIDE_LAW_RANGE
+            if any(issubclass(w.category, LinearMotion) for w in caught):
+                status = Status.LINEAR_MOTION
             rows.append((case, status, pack(*outputs), None))
     return Chunk(rows, time.perf_counter() - start, provenance())
 
