@@ -29,7 +29,7 @@ class Copies(Executor):
         try:
             function, arguments = pickle.loads(pickle.dumps((function, arguments)))
             future.set_result(pickle.loads(pickle.dumps(function(*arguments))))
-        except Exception as error:
+        except Exception as error:  # noqa: BLE001  (an executor passes every error on)
             future.set_exception(error)
         return future
 
@@ -45,14 +45,14 @@ CASES = {
         {}, "solve_slice", None,
     ),
     "a slow axis in the plane": (
-        {"speed_rpm": SPEEDS, "bearing_stiffness": np.geomspace(5e7, 5e8, 21)}, {}, "solve_slice", None,
+        {"speed_rpm": SPEEDS, "bearing_stiffness": np.geomspace(5e7, 5e8, 7)}, {}, "solve_slice", None,
     ),
     "every node with its multipliers": (
         {"torque": np.array([40.0, 95.0]), "speed_rpm": SPEEDS, "damping_ratio": DAMPING[::7]},
         {"refine": False, "store": "all"}, "solve_slice", 4,
     ),
     "cells that are proven": (
-        {"speed_rpm": SPEEDS[::5], "damping_ratio": DAMPING[::5]}, {"prove": True}, "solve_slice", None,
+        {"speed_rpm": SPEEDS[::5], "damping_ratio": DAMPING[::5]}, {"prove": True}, "solve_slice", 1,
     ),
 }  # fmt: skip
 
@@ -60,7 +60,7 @@ CASES = {
 @pytest.mark.parametrize("name", ["contact_ratio_1_1_large_shifts", "rack_25_degrees_always_pushing"])
 @pytest.mark.parametrize("case", CASES)
 def test_a_chart_on_an_executor_is_that_of_this_process(name, case, monkeypatch):
-    monkeypatch.setattr(module, "SMALL", 256)
+    monkeypatch.setattr(module, "SMALL", 250)
     monkeypatch.setattr(module, "_CHUNK", 100)
     pair = unlike_pair(name).with_(LIGHT)
     axes, options, function, count = CASES[case]
@@ -74,9 +74,10 @@ def test_a_chart_on_an_executor_is_that_of_this_process(name, case, monkeypatch)
     assert set(executor.calls) == {function}
     assert len(executor.calls) == count if count else len(executor.calls) > 1
     assert fractions[-1] == 1.0
-    assert not bool(alone.known.all()) or "refine" in options or "prove" in options
+    if case == "a plane at each torque":
+        assert not alone.known.all()  # refined: otherwise each node would be evaluated
 
 
 def test_what_is_no_executor_is_refused():
-    with pytest.raises(ParameterError, match="an executor of concurrent.futures"):
+    with pytest.raises(ParameterError, match=r"an executor of concurrent\.futures"):
         stability_chart("nasa_28_28", {"torque": [20.0, 30.0]}, executor="tcp://head:8786")

@@ -1,5 +1,6 @@
 """Do the samples say what the uncertain inputs do? Closed forms where the result is known."""
 
+from concurrent.futures import ThreadPoolExecutor
 from types import SimpleNamespace
 
 import numpy as np
@@ -105,6 +106,14 @@ def test_a_pair_without_uncertain_inputs_is_refused():
     pair = LINEAR.with_({"uncertainty": {}})
     with pytest.raises(ParameterError, match="uncertainty"):
         uncertainty(pair, 16)
+
+
+def test_a_time_limit_has_no_meaning_on_an_executor():
+    with ThreadPoolExecutor(1) as executor:
+        with pytest.raises(ParameterError, match=r"seconds = 5.*none with an executor"):
+            uncertainty(LINEAR, 16, seconds=5.0, executor=executor)
+        with pytest.raises(ParameterError, match=r"an executor of concurrent\.futures"):
+            uncertainty(LINEAR, 16, executor="tcp://head:8786")
 
 
 def test_the_first_dimensions_are_those_of_the_inputs_that_matter_most():
