@@ -9,6 +9,7 @@ from __future__ import annotations
 import asyncio
 import logging
 import re
+import signal
 import sys
 import threading
 import time
@@ -90,6 +91,7 @@ def open_cluster(
                     dashboard_address=None,
                     silence_logs=logging.CRITICAL,
                     env=ONE_THREAD,
+                    preload=[__name__],
                 )
             )
         else:
@@ -120,6 +122,14 @@ def _workers_on_this_machine(address: str) -> int:
         action = "'dask scheduler' prints its address; local:2 is a cluster on this machine."
         raise refuse("cluster", text, allowed, action)
     return 0
+
+
+def dask_setup(_worker: object) -> None:
+    """Let a worker process of this machine ignore Ctrl-C, which a terminal sends to all processes.
+
+    Dask calls this function as a worker starts. The client ends the workers.
+    """
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def _refuse_no_scheduler(address: str) -> None:
