@@ -5,6 +5,7 @@ Scheduler and workers are processes of this machine, as a user starts them.
 
 import json
 import os
+import signal
 import socket
 import subprocess
 import sys
@@ -21,7 +22,16 @@ from floquet import stability_chart
 from lumped.errors import ParameterError
 from tests.unlike_pairs import unlike_pair
 from validation.prediction.uncertainty import uncertainty
-from validation.studies import Status, SweepStopped, open_cluster, read_results, run_sweep, runner, workers
+from validation.studies import (
+    Status,
+    StoreError,
+    SweepStopped,
+    open_cluster,
+    read_results,
+    run_sweep,
+    runner,
+    workers,
+)
 from validation.studies import cluster as clusters
 from validation.studies.cases import CaseList, StudyEvaluator
 
@@ -119,16 +129,18 @@ def test_a_worker_is_killed_and_the_client_interrupted_and_no_row_is_missing(
     out = tmp_path / "out"
     messages = []
     begun = []
+    sizes = set()
 
     def tell(text):
         messages.append(text)
         begun.append(dask.worker())
 
     def progress(done, total, failed):
-        if done > 20 and len(begun) == 2:
+        sizes.add(cluster.workers)
+        if done > 20 and len(begun) == 2 and cluster.workers == 2:
             begun[1].kill()
             begun.append("killed")
-        if done > 60:
+        if done > 60 and len(begun) == 3 and cluster.workers == 1:
             raise KeyboardInterrupt
 
     with open_cluster(dask.address, wait_seconds=PATIENCE, tell=tell) as cluster:
@@ -138,6 +150,7 @@ def test_a_worker_is_killed_and_the_client_interrupted_and_no_row_is_missing(
             run_sweep(study, out, executor=cluster, progress=progress)
     assert messages == [f"{dask.address} has no workers yet: waiting for the first for up to {PATIENCE:g} s."]
     assert begun[2:] == ["killed"]
+    assert sizes >= {1, 2}
     processes = {int(path.name) for path in folder.iterdir()}
     assert processes == {begun[0].pid, begun[1].pid}
     assert 60 < stored(out) < 120
@@ -255,13 +268,13 @@ def test_a_case_that_ends_its_worker_costs_itself_alone(study, tmp_path, monkeyp
 
 @pytest.mark.slow
 def test_ranges_and_charts_are_those_of_this_process():
-    """The pair of the range loses contact; the chart has a plane of speed and damping at each torque."""
+    """The pair of the range loses contact; the chart has a fit at each torque."""
     uncertain = unlike_pair("larger_gear_drives_contact_lost")
     charted = unlike_pair("contact_ratio_1_1_large_shifts")
     axes = {
         "torque": [30.0, 55.0],
-        "speed_rpm": np.linspace(2000.0, 9000.0, 81),
-        "damping_ratio": np.linspace(0.0, 0.02, 61),
+        "speed_rpm": np.linspace(2000.0, 9000.0, 11),
+        "damping_ratio": np.linspace(0.0, 0.02, 7),
     }
     with open_cluster("local:2") as cluster:
         ranges = uncertainty(uncertain, 16, executor=cluster)
@@ -277,3 +290,36 @@ def test_no_thread_of_a_refused_cluster_is_left(monkeypatch):
     with pytest.raises(ParameterError), open_cluster("tcp://127.0.0.1:1"):
         pass
     assert threading.active_count() == before
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform != "linux", reason="signals of Linux")
+def test_ctrl_c_reaches_all_processes_of_a_terminal_and_only_the_sweep_says_so(make_study, tmp_path):
+    """The workers of local:N are processes of the same terminal."""
+    axes = [{"field": "speed_rpm", "low": 1000, "high": 6000, "count": 2000}]
+    study = make_study(analysis="lumped", outputs=["dte_rms"], axes=axes)
+    (tmp_path / "study.toml").write_text(study.to_toml())
+    out = tmp_path / "out"
+
+    def begun():
+        try:
+            return stored(out) > 5
+        except StoreError:  # none yet
+            return False
+
+    words = ["sweep", "study.toml", "-o", str(out), "--cluster", "local:1"]
+    run = subprocess.Popen(
+        [sys.executable, "-m", "validation.cli", *words],
+        cwd=tmp_path,
+        env=os.environ | {"PYTHONPATH": os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])},
+        text=True,
+        stderr=subprocess.PIPE,
+        start_new_session=True,
+    )
+    wait_until(begun, "no case was computed")
+    os.killpg(run.pid, signal.SIGINT)
+    _, text = run.communicate(timeout=PATIENCE)
+    assert run.returncode == 130
+    assert "Traceback" not in text
+    assert text.rstrip().endswith(f"what was computed is in {out}: run the command with --resume.")
+    assert 5 < stored(out) < 2000

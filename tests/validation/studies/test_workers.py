@@ -11,7 +11,7 @@ from types import SimpleNamespace
 import pytest
 
 from lumped.errors import ParameterError
-from validation.studies import Status, StoreError, SweepStopped, run_sweep, runner, workers
+from validation.studies import Cluster, Status, StoreError, SweepStopped, run_sweep, runner, workers
 from validation.studies.cases import CaseList, StudyEvaluator
 from validation.studies.store import provenance, read_table
 
@@ -125,6 +125,15 @@ def test_workers_that_join_later_get_cases(study, monkeypatch):
     records.slots = slots
     next(chunks(study, records))
     assert sizes == [0, 2, 2, 2, 2, 8, 8, 8, 8, 8][: len(sizes)]
+
+
+def test_the_slots_of_a_cluster_are_its_workers_at_present():
+    cluster = object.__new__(Cluster)
+    cluster._threads = {"tcp://a:1": 1}
+    with workers.workers_of(0, cluster, None) as pool:
+        assert pool.slots() == 1
+        cluster._threads = {"tcp://a:1": 1, "tcp://b:1": 4}  # a worker computes one case at a time
+        assert pool.slots() == 2
 
 
 def test_cases_of_a_lost_worker_run_again_and_a_case_has_the_blame_only_alone(study, monkeypatch):
