@@ -88,7 +88,7 @@ def open_cluster(
                     n_workers=workers,
                     threads_per_worker=1,
                     protocol="tcp",
-                    dashboard_address=None,
+                    dashboard_address="127.0.0.1:0",  # any free port: two sweeps may run at once
                     silence_logs=logging.CRITICAL,
                     env=ONE_THREAD,
                     preload=[__name__],
