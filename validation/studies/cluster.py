@@ -72,6 +72,7 @@ def open_cluster(
     ParameterError : an address that is none, a scheduler that does not answer, no worker in the time, a
         worker with other source code or other versions of the libraries than this process, or Dask is not
         installed
+    ClusterStopped : the workers of "local:N" do not start; later, in calls: the cluster cannot go on
     """
     wait = real_number("wait_seconds", wait_seconds, 0.0, 1e6, unit="s", action="Give the longest wait.")
     workers = _workers_on_this_machine(address)
@@ -83,17 +84,24 @@ def open_cluster(
     with _dask_messages_hidden(), ExitStack() as opened:
         scheduler: Any = address
         if workers:
-            scheduler = opened.enter_context(
-                distributed.LocalCluster(
-                    n_workers=workers,
-                    threads_per_worker=1,
-                    protocol="tcp",
-                    dashboard_address="127.0.0.1:0",  # any free port: two sweeps may run at once
-                    silence_logs=logging.CRITICAL,
-                    env=ONE_THREAD,
-                    preload=[__name__],
+            try:
+                scheduler = opened.enter_context(
+                    distributed.LocalCluster(
+                        n_workers=workers,
+                        threads_per_worker=1,
+                        protocol="tcp",
+                        dashboard_address="127.0.0.1:0",  # any free port: two sweeps may run at once
+                        silence_logs=logging.CRITICAL,
+                        env=ONE_THREAD,
+                        preload=[__name__],
+                    )
                 )
-            )
+            except Exception as error:
+                reason = " ".join(str(error).split())[:300]
+                raise ClusterStopped(
+                    f"The workers of {address} do not start ({reason}): check the memory of this machine; in "
+                    "a script, call open_cluster under `if __name__ == '__main__':`."
+                ) from error
         else:
             _refuse_no_scheduler(address)
         try:

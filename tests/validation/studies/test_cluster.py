@@ -323,3 +323,15 @@ def test_ctrl_c_reaches_all_processes_of_a_terminal_and_only_the_sweep_says_so(m
     assert "Traceback" not in text
     assert text.rstrip().endswith(f"what was computed is in {out}: run the command with --resume.")
     assert 5 < stored(out) < 2000
+
+
+@pytest.mark.slow
+def test_workers_of_a_script_without_its_guard_do_not_start_and_it_says_why(tmp_path):
+    script = tmp_path / "unguarded.py"
+    script.write_text("import spurcheck\nwith spurcheck.open_cluster('local:1'):\n    pass\n")
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])}
+    ended = subprocess.run(
+        [sys.executable, str(script)], env=environment, capture_output=True, text=True, timeout=PATIENCE
+    )
+    assert ended.returncode == 1
+    assert "open_cluster under `if __name__ == '__main__':`" in ended.stderr.splitlines()[-1]
