@@ -18,7 +18,7 @@ Stability  stability_chart, stability_margins, stability_boundaries, campbell
 Any system PeriodicSystem, periodic_system, from_second_order, monodromy; averaged_state_space, the pair
            as a StateSpace of python-control
 Signals    order_spectrum, waterfall, time_synchronous_average; more in spurcheck.validation.signals
-Studies    load_study, run_sweep, read_results
+Studies    load_study, run_sweep, read_results; open_cluster: they run on a Dask cluster
 Files      plot, write_results, write_rexs, write_interactive_page
 Errors     SpurcheckError: ParameterError (an input), NumericalError (a computation); LawRangeWarning
 
@@ -92,6 +92,7 @@ if TYPE_CHECKING:  # the one list of the public names; below it is read at run t
     from validation.signals import time_synchronous_average as time_synchronous_average
     from validation.signals import waterfall as waterfall
     from validation.studies import load_study as load_study
+    from validation.studies import open_cluster as open_cluster
     from validation.studies import read_results as read_results
     from validation.studies import run_sweep as run_sweep
 

@@ -3,17 +3,16 @@ How do I run a sweep on a cluster?
 ==================================
 
 The same study runs in one process, on all cores or on a cluster, and gives the same file. Here the cluster is
-this machine; elsewhere, give the address of its scheduler: ``distributed.Client("tcp://head:8786")``.
+this machine; elsewhere, give the address of its scheduler: ``open_cluster("tcp://head:8786")``.
 """
 
 import tempfile
 from pathlib import Path
 
-import distributed
 import xarray as xr
 from matplotlib.figure import Figure
 
-from validation.studies import load_study, read_results, run_sweep
+from validation.studies import load_study, open_cluster, read_results, run_sweep
 
 STUDY = {
     "name": "efficiency",
@@ -29,13 +28,8 @@ STUDY = {
 
 def compute() -> xr.Dataset:
     """Mesh efficiency over torque with two friction laws, computed by two workers of a local cluster."""
-    with (
-        tempfile.TemporaryDirectory() as folder,
-        distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0") as cluster,
-        distributed.Client(cluster) as client,
-    ):
-        executor = client.get_executor(pure=False)
-        run_sweep(load_study(STUDY), Path(folder, "out"), executor=executor, workers=2)
+    with tempfile.TemporaryDirectory() as folder, open_cluster("local:2") as cluster:
+        run_sweep(load_study(STUDY), Path(folder, "out"), executor=cluster)
         return read_results(Path(folder, "out")).load()
 
 

@@ -68,6 +68,74 @@ def checked_axes(axes: Axes) -> dict[str, FloatArray]:
     return result
 
 
+@dataclass(frozen=True, eq=False)
+class NodeResults:
+    """Results at some points of a chart.
+
+    Attributes
+    ----------
+    points : (k,) places of the points in the chart
+    radius, error, verdict, proven : (k,) as in `ChartPoints`
+    gaps : (k,) see `gaps`; empty where nobody asks for them
+    multipliers, multiplier_errors : (k, size) the largest modulus first; (k, 0) where nobody asks for them
+    """
+
+    points: IntArray
+    radius: FloatArray
+    error: FloatArray
+    verdict: npt.NDArray[np.int8]
+    proven: BoolArray
+    gaps: FloatArray
+    multipliers: ComplexArray
+    multiplier_errors: FloatArray
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """Which results of a point are wanted besides radius, error and verdict.
+
+    Attributes
+    ----------
+    multipliers : the multipliers and bounds on their errors
+    gaps : see `gaps`
+    """
+
+    multipliers: bool
+    gaps: bool
+
+
+def node_results(
+    points: IntArray,
+    values: ComplexArray,
+    errors: FloatArray,
+    proven: bool | BoolArray,
+    wanted: Wanted,
+    coupled: int | None = None,
+    neutral: bool | BoolArray = False,
+) -> NodeResults:
+    """Return the results of points (k,) from multipliers (k, size) and bounds on their errors.
+
+    The ``coupled`` multipliers come first. ``neutral`` (k,): all multipliers are proven to be simple and on
+    the unit circle.
+    """
+    radius, error = radii_with_bounds(values, errors)
+    columns = (
+        np.argsort(-np.abs(values), axis=1, kind="stable")
+        if wanted.multipliers
+        else np.empty((points.size, 0), dtype=np.intp)
+    )
+    return NodeResults(
+        points,
+        radius,
+        error,
+        verdicts(radius, error, neutral),
+        np.broadcast_to(np.asarray(proven, dtype=bool), points.shape),
+        gaps(values[:, :coupled]) if wanted.gaps else np.empty(0),
+        np.take_along_axis(values, columns, 1),
+        np.take_along_axis(errors, columns, 1),
+    )
+
+
 class ChartPoints:
     """Results at the points of a chart, in C order of its grid.
 
@@ -107,23 +175,36 @@ class ChartPoints:
 
         ``neutral`` (k,): all multipliers are proven to be on the unit circle, and motions bounded.
         """
-        radius, error = radii_with_bounds(values, errors)
-        self.radius[points] = radius
-        self.error[points] = error
-        self.verdict[points] = verdicts(radius, error, neutral)
-        self.proven[points] = proven
+        self.store(node_results(points, values, errors, proven, self.wanted, coupled, neutral))
+
+    @property
+    def wanted(self) -> Wanted:
+        """Results of a point that are wanted at present."""
+        return Wanted(self.everything, self.gaps is not None)
+
+    def store(self, results: NodeResults) -> None:
+        """Store the results of some points."""
+        points = results.points
+        self.radius[points] = results.radius
+        self.error[points] = results.error
+        self.verdict[points] = results.verdict
+        self.proven[points] = results.proven
         self.known[points] = True
         if self.gaps is not None:
-            self.gaps.put(points, gaps(values[:, :coupled]))
+            self.gaps.put(points, results.gaps)
         if not self.everything:
             return
         if self.multipliers is None or self.multiplier_errors is None:
-            shape = self.radius.size, values.shape[1]
+            shape = self.radius.size, results.multipliers.shape[1]
             self.multipliers = np.empty(shape, dtype=complex)
             self.multiplier_errors = np.empty(shape)
-        ranking = np.argsort(-np.abs(values), axis=1, kind="stable")
-        self.multipliers[points] = np.take_along_axis(values, ranking, 1)
-        self.multiplier_errors[points] = np.take_along_axis(errors, ranking, 1)
+        self.multipliers[points] = results.multipliers
+        self.multiplier_errors[points] = results.multiplier_errors
+
+    def store_part(self, places: IntArray, part: ChartPoints) -> None:
+        """Store all points of a part of this chart, interpolated points too. ``places``: of the points."""
+        for name in ("radius", "error", "verdict", "proven", "known"):
+            getattr(self, name)[places] = getattr(part, name)
 
 
 class GapsOfBatch:

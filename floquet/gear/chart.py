@@ -9,40 +9,37 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Iterator, Mapping
+from concurrent.futures import Executor
 from dataclasses import dataclass, replace
-from functools import cached_property
-from itertools import pairwise
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import numpy.typing as npt
 from scipy import ndimage
 
-from floquet.engine.chart import SMALL, Axes, ChartPoints, chart_dataset, refine_planes
+from floquet.engine.chart import (
+    SMALL,
+    Axes,
+    ChartPoints,
+    chart_dataset,
+    refine_planes,
+)
 from floquet.engine.tongues import Tongue, label_tongue
 from floquet.gear.axes import (
     GEAR_AXES,
-    FrictionFamily,
     GearVariation,
     chart_axes,
-    friction_families,
     gear_grid,
     operating_rpm,
     vary,
 )
 from floquet.gear.multipliers import (
-    Feedback,
-    OffLineOfAction,
-    feedback_system,
-    fitted_block,
     gear_block,
-    stays_bounded,
-    stays_symmetric,
 )
-from floquet.rank_one.batch import fast_monodromies, fast_multipliers
-from floquet.rank_one.boxes import proven_cells
-from floquet.rank_one.system import RankOneSystem
+from floquet.gear.slices import ChartSlice, SlicePart, solve_slice
+from floquet.rank_one.batch import fast_monodromies
 from lumped.arguments import of_type, one_of, real_number
+from lumped.calls import checked_executor, results_of
 from lumped.display.progress import reported_to, shows_progress
 from lumped.errors import LawRangeWarning, refuse
 from lumped.labelling import Variable, labelled_dataset, provenance
@@ -55,7 +52,6 @@ if TYPE_CHECKING:
 
 _INNER = ("speed_rpm", "damping_ratio", "friction_coefficient")
 _CELLS = ("speed_rpm", "damping_ratio")  # axes of a chart whose cells can be proven
-_FEWEST_PARTS = (800, 200)  # of each of these axes; a part is proven as a whole
 _CHUNK = 32_768  # points in memory with their matrices
 _LARGEST = 25_000_000
 _COUNTED = 1_000_000  # nodes that are counted at once
@@ -73,6 +69,7 @@ def stability_chart(
     rtol: float = 1e-10,
     store: Literal["all", "radius"] = "radius",
     supports: Supports | None = None,
+    executor: Executor | None = None,
     progress: ProgressRequest = None,
 ) -> xr.Dataset:
     """Stability chart of a gear pair, of its linear form with like teeth.
@@ -102,6 +99,9 @@ def stability_chart(
         point instead of 19
     supports : "springs", the pair's ``bearings``, or its "shafts" with the modes that count most; by default
         the shafts of a pair that has them
+    executor : what computes the points: a cluster of ``spurcheck.open_cluster``, or any executor of
+        ``concurrent.futures``. The result is the same. Worth it over axes besides speed, mesh damping and
+        friction: each of their values needs its own fit. None: this process
     progress : True (a bar), False (none), None (a bar where the call takes over two seconds), or a function
         that is called with the finished fraction
 
@@ -133,6 +133,7 @@ def stability_chart(
     if points > _LARGEST:
         raise refuse("points of the chart", points, f"at most {_LARGEST}", "Give the axes smaller counts.")
     one_of("store", store, ("all", "radius"))
+    checked_executor(executor)
     of_type("refine", refine, bool, "True or False")
     if of_type("prove", prove, bool, "True or False"):
         _check_cells(grid)
@@ -143,7 +144,16 @@ def stability_chart(
     if plane is not None and store == "all":
         action = "Give refine=False, which evaluates every node."
         raise refuse("store", store, '"radius" for a chart that refines itself', action)
-    result = solved(variation, grid, rtol, plane, everything=store == "all", prove=prove, progress=progress)
+    result = solved(
+        variation,
+        grid,
+        rtol,
+        plane,
+        everything=store == "all",
+        prove=prove,
+        executor=executor,
+        progress=progress,
+    )
     cells = None if result.cells is None else _verdicts_of_cells(grid, result.cells)
     dataset = chart_dataset(grid, result)
     if cells is not None:
@@ -183,17 +193,6 @@ def _verdicts_of_cells(grid: Mapping[str, FloatArray], cells: IntArray) -> xr.Da
     return labelled_dataset(verdicts, middles, {"proven_share": share})
 
 
-def _finer(values: FloatArray, least: int) -> tuple[FloatArray, int]:
-    """Cut each interval of increasing values into equal parts, so that there are at least ``least`` parts.
-
-    Returns the finer values, and the number of parts of each interval.
-    """
-    parts = max(1, -(-least // (values.size - 1)))
-    share = np.arange(parts) / parts
-    finer = values[:-1, None] * (1.0 - share) + values[1:, None] * share
-    return np.append(finer.ravel(), values[-1]), parts
-
-
 def _plane(grid: Mapping[str, FloatArray]) -> tuple[str, str] | None:
     """The two axes over which a chart refines itself; None: there are few nodes.
 
@@ -215,6 +214,7 @@ def solved(
     *,
     everything: bool = False,
     prove: bool = False,
+    executor: Executor | None = None,
     progress: Progress | None = None,
 ) -> ChartPoints:
     """Multipliers of a variation of a pair at all points of a grid, or their spectral radii alone.
@@ -223,7 +223,10 @@ def solved(
     """
     count = math.prod(values.size for values in grid.values())
     points = ChartPoints(count, everything=everything)
-    evaluate = _Points(variation, grid, rtol, points)
+    if executor is not None and plane is not None and _apart(grid, plane):
+        _solve_parts(variation, grid, rtol, plane, points, executor, progress)
+        return points
+    evaluate = _Points(variation, grid, rtol, points, executor)
     if prove:
         points.cells = evaluate.cells(progress)
     if plane is not None:
@@ -240,12 +243,49 @@ def solved(
     shape = [values.size for values in grid.values()]
     order = sorted(range(len(names)), key=lambda i: (names[i] in _INNER, names[i] != "speed_rpm"))
     index = np.arange(count).reshape(shape).transpose(order).reshape(-1, evaluate.each)
+    if executor is not None:
+        evaluate(index.ravel(), progress)
+        return points
     for k, row in enumerate(index):
         for i in range(0, row.size, _CHUNK):
             evaluate(row[i : i + _CHUNK])
             if progress is not None:
                 progress((k * row.size + min(i + _CHUNK, row.size)) / count)
     return points
+
+
+def _apart(grid: Mapping[str, FloatArray], plane: tuple[str, str]) -> list[str]:
+    """Axes at each value of which a chart over a plane is computed for itself.
+
+    A friction axis scales friction by its largest value, so its values stay together.
+    """
+    return [name for name in grid if name not in (*plane, *_INNER) and grid[name].size > 1]
+
+
+def _solve_parts(
+    variation: GearVariation,
+    grid: Mapping[str, FloatArray],
+    rtol: float,
+    plane: tuple[str, str],
+    points: ChartPoints,
+    executor: Executor,
+    progress: Progress | None,
+) -> None:
+    """Compute and store the parts of a chart, one for each combination of values of the axes ``_apart``."""
+    names = list(grid)
+    apart = _apart(grid, plane)
+    places = np.arange(points.radius.size).reshape([values.size for values in grid.values()])
+    places = np.moveaxis(places, [names.index(name) for name in apart], range(len(apart)))
+    combinations = list(np.ndindex(places.shape[: len(apart)]))
+    parts = (
+        dict(grid) | {name: grid[name][[i]] for name, i in zip(apart, combination, strict=True)}
+        for combination in combinations
+    )
+    results = results_of(solved, ((variation, part, rtol, plane) for part in parts), executor)
+    for number, (combination, result) in enumerate(zip(combinations, results, strict=True)):
+        points.store_part(places[combination].ravel(), result)
+        if progress is not None:
+            progress((number + 1) / len(combinations))
 
 
 class _Points:
@@ -257,8 +297,14 @@ class _Points:
     """
 
     def __init__(
-        self, variation: GearVariation, grid: Mapping[str, FloatArray], rtol: float, points: ChartPoints
+        self,
+        variation: GearVariation,
+        grid: Mapping[str, FloatArray],
+        rtol: float,
+        points: ChartPoints,
+        executor: Executor | None = None,
     ) -> None:
+        self.executor = executor
         self.variation = variation
         self.grid = grid
         self.rtol = rtol
@@ -270,21 +316,44 @@ class _Points:
         self.each = math.prod(grid[n].size for n in self.inner)
         self._slices: dict[int, ChartSlice] = {}
 
-    def __call__(self, places: IntArray) -> None:
+    def __call__(self, places: IntArray, progress: Progress | None = None) -> None:
         """Put the multipliers at some places of the chart into its points."""
+        wanted = self.points.wanted
+        if self.executor is None:
+            for part in self._parts(places):
+                if part.slice_number not in self._slices:
+                    self._slices[part.slice_number] = ChartSlice(
+                        self.variation, self.grid, self.inner, part.point
+                    )
+                for result in self._slices[part.slice_number].solve(
+                    part.places, part.indices, wanted, self.rtol
+                ):
+                    self.points.store(result)
+            return
+        calls = (
+            (self.variation, self.grid, self.inner, part.point, part.places, part.indices, wanted, self.rtol)
+            for part in self._parts(places)
+        )
+        done = 0
+        for results in results_of(solve_slice, calls, self.executor):
+            for result in results:
+                self.points.store(result)
+                done += result.points.size
+            if progress is not None:
+                progress(done / places.size)
+
+    def _parts(self, places: IntArray) -> Iterator[SlicePart]:
+        """Yield parts of the places. The points of a part are of one slice."""
         indices = dict(zip(self.grid, np.unravel_index(places, self.shape), strict=True))
         key = np.zeros(places.size, dtype=np.intp)
         for name in self.slow:
             key = key * self.grid[name].size + indices[name]
         for slice_number in np.unique(key):
             of_slice = np.flatnonzero(key == slice_number)
-            if slice_number not in self._slices:
-                point = {name: float(self.grid[name][indices[name][of_slice[0]]]) for name in self.slow}
-                self._slices[slice_number] = ChartSlice(self.variation, self.grid, self.inner, point)
-            slice_indices = {name: indices[name][of_slice] for name in self.inner}
-            for part in np.split(np.arange(of_slice.size), range(_CHUNK, of_slice.size, _CHUNK)):
-                chosen = {name: values[part] for name, values in slice_indices.items()}
-                self._slices[slice_number].solve(places[of_slice[part]], chosen, self.points, self.rtol)
+            point = {name: float(self.grid[name][indices[name][of_slice[0]]]) for name in self.slow}
+            for part in np.split(of_slice, range(_CHUNK, of_slice.size, _CHUNK)):
+                part_indices = {name: indices[name][part] for name in self.inner}
+                yield SlicePart(int(slice_number), point, places[part], part_indices)
 
     def cells(self, progress: Progress | None) -> IntArray:
         """Verdicts of the cells of a chart over speed and damping, both increasing."""
@@ -303,167 +372,6 @@ class _Points:
         for corner in ((a, b) for a in (slice(1, None), slice(-1)) for b in (slice(1, None), slice(-1))):
             undecided[corner] |= (cells == 0) | (cells != verdict[corner])
         return np.asarray(places[undecided & ~self.points.known[places]])
-
-
-class _FamilyBlock(NamedTuple):
-    """Common data of all speeds of one friction family.
-
-    Attributes
-    ----------
-    system : the feedback block
-    separate : motions that the mesh does not couple
-    levels : number of the parts of the gains that have a factor of friction
-    period_times_rpm : mesh period [s] times pinion speed [rpm]
-    feedback : the coordinates of the system
-    """
-
-    system: RankOneSystem
-    separate: OffLineOfAction
-    levels: int
-    period_times_rpm: float
-    feedback: Feedback
-
-
-class ChartSlice:
-    """Points of a chart that differ in speed, mesh damping and mean friction only.
-
-    Damping only scales wd. The mean friction coefficient only scales the part of w by friction. Speed only
-    changes the period; with many friction laws speed scales friction too. Therefore one fit of the feedback
-    block serves all points of the slice.
-
-    Parameters
-    ----------
-    variation : of the chart
-    grid : name -> values of its axes
-    inner : names of the axes along which points of the slice differ
-    point : values of the other axes
-    """
-
-    def __init__(
-        self,
-        variation: GearVariation,
-        grid: Mapping[str, FloatArray],
-        inner: list[str],
-        point: Mapping[str, float],
-    ) -> None:
-        largest_friction = (
-            float(grid["friction_coefficient"].max()) if "friction_coefficient" in inner else 1.0
-        )
-        # Damping and friction of the reference, to which the factors of the slice relate.
-        references = {"damping_ratio": 1.0, "friction_coefficient": largest_friction}
-        self.reference = vary(variation, {**point, **{n: references[n] for n in inner if n in references}})
-        operating_speed = np.array([operating_rpm(self.reference.pair)])
-        self.speeds = grid["speed_rpm"] if "speed_rpm" in inner else operating_speed
-        self.damping = grid["damping_ratio"] if "damping_ratio" in inner else np.ones(1)
-        self.friction = (
-            grid["friction_coefficient"] / largest_friction if "friction_coefficient" in inner else np.ones(1)
-        )
-        self._blocks: dict[int, _FamilyBlock] = {}
-
-    @cached_property
-    def families(self) -> list[FrictionFamily]:
-        """Families of speeds. Friction needs only one fit for a family."""
-        return friction_families(self.reference, self.speeds)
-
-    @cached_property
-    def _rows(self) -> tuple[IntArray, IntArray]:
-        """Number of the family of each speed, and the row of the speed in this family."""
-        family = np.empty(self.speeds.size, dtype=np.intp)
-        row = np.empty(self.speeds.size, dtype=np.intp)
-        for k, one in enumerate(self.families):
-            family[one.members] = k
-            row[one.members] = np.arange(one.members.size)
-        return family, row
-
-    def _block(self, k: int, rtol: float) -> _FamilyBlock:
-        """Fit the feedback block of family k once."""
-        if k not in self._blocks:
-            family = self.families[k]
-            variation = GEAR_AXES["speed_rpm"].apply(self.reference, family.speed_rpm)
-            feedback = feedback_system(variation)
-            levels = [] if variation.pair.friction.law == "none" else [0.0]
-            levels += [] if family.level is None else [family.level]
-            block = fitted_block(feedback, variation.stiffness_variation, max(0.01 * rtol, 1e-12), levels)
-            period_times_rpm = block.period * operating_rpm(variation.pair)
-            self._blocks[k] = _FamilyBlock(
-                block, OffLineOfAction.of(feedback), len(levels), period_times_rpm, feedback
-            )
-        return self._blocks[k]
-
-    def cells(self, rtol: float, progress: Progress | None) -> IntArray:
-        """Verdicts (N-1, M-1) of the cells between neighbouring speeds and damping ratios, `proven_cells`."""
-        order = np.argsort(self.speeds)
-        speeds = self.speeds[order]
-        damping = np.sort(self.damping)
-        verdict = np.zeros((speeds.size - 1, damping.size - 1), dtype=np.intp)
-        family_of_speed = self._rows[0][order]
-        for i, j in self._smooth_runs(speeds, family_of_speed):
-            family = self.families[family_of_speed[i]]
-            block = self._block(int(family_of_speed[i]), rtol)
-            # Motions that the mesh does not couple must die out, too: else only instability can be proven.
-            exponents = block.separate.exponents
-            separate_fade = bool((exponents.real + block.separate.errors < 0.0).all())
-            fewest_speeds, fewest_ratios = _FEWEST_PARTS if separate_fade else (1, 1)
-            rpm, speed_parts = _finer(speeds[i:j], fewest_speeds)
-            ratios, damping_parts = _finer(damping, fewest_ratios)
-
-            def factors(
-                T: FloatArray, block: _FamilyBlock = block, family: FrictionFamily = family
-            ) -> FloatArray | None:
-                result = family.factors_at(block.period_times_rpm / T)
-                return None if result is None else result[:, : block.levels]
-
-            periods = block.period_times_rpm / rpm[::-1]
-            result = proven_cells(block.system, periods, ratios, factors, progress)[::-1]
-            parts = result.reshape(j - i - 1, speed_parts, damping.size - 1, damping_parts)
-            lowest = parts.min(axis=(1, 3))
-            highest = parts.max(axis=(1, 3))
-            decided = lowest if separate_fade else np.minimum(lowest, 0)
-            verdict[i : j - 1] = np.where(lowest == highest, decided, 0)
-        return verdict
-
-    def _smooth_runs(self, speeds: FloatArray, family_of_speed: IntArray) -> Iterator[tuple[int, int]]:
-        """First index and end of runs of two or more neighbouring speeds in which factors are smooth."""
-        for i, j in _runs(family_of_speed):
-            family = self.families[family_of_speed[i]]
-            for first, end in _runs(family.smooth_groups(speeds[i:j])):
-                if end - first > 1:
-                    yield i + first, i + end
-
-    def solve(
-        self, places: IntArray, indices: Mapping[str, IntArray], points: ChartPoints, rtol: float
-    ) -> None:
-        """Put the multipliers at places (k,) into ``points``.
-
-        ``indices`` maps each inner axis to the indices (k,) of its values.
-        """
-        zeros = np.zeros(places.size, dtype=np.intp)
-        speed = indices.get("speed_rpm", zeros)
-        damping = self.damping[indices.get("damping_ratio", zeros)]
-        friction = self.friction[indices.get("friction_coefficient", zeros)]
-        family_of_speed, row_in_family = self._rows
-        for number in np.unique(family_of_speed[speed]):
-            members = np.flatnonzero(family_of_speed[speed] == number)
-            family = self.families[number]
-            block = self._block(int(number), rtol)
-            T = block.period_times_rpm / self.speeds[speed[members]]
-            factors = friction[members, None] * family.factors[row_in_family[speed[members]]]
-            result = fast_multipliers(
-                block.system, T, damping[members], factors[:, : block.levels], tolerance=2e-4 * rtol
-            )
-            separate, separate_errors = block.separate.multipliers(T)
-            values = np.concatenate([result.multipliers, separate], axis=1)
-            errors = np.concatenate([result.errors, separate_errors], axis=1)
-            undamped = damping[members] * self.reference.pair.mesh.damping_ratio == 0.0
-            rubs = factors[:, : block.levels].any(axis=1)
-            symplectic = undamped & stays_symmetric(block.feedback, self.reference.supports, rubs)
-            neutral = stays_bounded(result.multipliers, result.errors, symplectic, block.separate)
-            points.put(places[members], values, errors, True, result.multipliers.shape[1], neutral)
-
-
-def _runs(numbers: IntArray) -> Iterator[tuple[int, int]]:
-    """First index and end of runs of equal numbers."""
-    return pairwise([0, *(1 + np.flatnonzero(np.diff(numbers))).tolist(), numbers.size])
 
 
 def label_variation(variation: GearVariation) -> Tongue:

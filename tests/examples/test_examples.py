@@ -1,11 +1,9 @@
 """Does every example run, draw labelled axes, and show the fact it is there for?"""
 
-import functools
 import json
 import re
 from pathlib import Path
 
-import distributed
 import numpy as np
 import pytest
 import xarray as xr
@@ -64,11 +62,8 @@ def test_13_half_a_period_each_needs_no_damping(shown):
     assert float(result["critical_damping"].max()) > 0.02
 
 
-def test_16_the_cluster_gives_the_file_of_one_process(example, labelled, tmp_path, monkeypatch):
+def test_16_the_cluster_gives_the_file_of_one_process(example, labelled, tmp_path):
     module = example(16)
-    # Workers in this process: tests/validation/studies/test_cluster.py starts processes, and kills them.
-    local = functools.partial(distributed.LocalCluster, processes=False)
-    monkeypatch.setattr(distributed, "LocalCluster", local)
     result = module.compute()
     labelled(module.draw(result))
     run_sweep(load_study(module.STUDY), tmp_path / "alone", workers=0)

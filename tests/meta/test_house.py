@@ -10,8 +10,9 @@ ROOT = Path(__file__).parents[2]
 PACKAGES = ("lumped", "multibody", "floquet", "validation")
 #: Files that every folder of a package may need; everything else has a folder.
 LOOSE = {
-    "lumped": {"arguments", "cache", "compiler", "errors", "gauss_legendre", "kernel_stamps", "labelling",
-     "linked_code", "outcomes", "path_function", "path_values", "ranges", "root_in_bracket", "typing"},
+    "lumped": {"arguments", "cache", "calls", "compiler", "errors", "gauss_legendre", "kernel_stamps",
+     "labelling", "linked_code", "outcomes", "path_function", "path_values", "ranges",
+     "root_in_bracket", "typing"},
     "validation": {"stop_signals", "cli", "pytest_plugin"},
 }  # fmt: skip
 #: Folders of tests that belong to no single package.

@@ -11,8 +11,10 @@ binomial distribution of order statistics, David and Nagaraja, Order Statistics,
 from __future__ import annotations
 
 import math
+import threading
 import warnings
 from collections.abc import Callable, Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
@@ -23,6 +25,7 @@ from scipy.stats import binom, qmc, rankdata
 import lumped
 from floquet.orbits.deadline import Deadline
 from lumped.arguments import real_number, whole_number
+from lumped.calls import checked_executor, results_of
 from lumped.display.progress import reported_to, shows_progress
 from lumped.errors import LawRangeWarning, NumericalError, SpurcheckError, refuse
 from lumped.labelling import Variable, labelled_dataset, provenance
@@ -71,6 +74,8 @@ _ALL_CYCLES = 30_000
 #: Flags of a sample, in the last columns of the table.
 FLAGS = ("contact_lost", "unstable", "linear")
 _ORDER_NAMES = tuple(f"bearing_order_{m}" for m in range(1, ORDERS + 1))
+#: Warning filters belong to the process, so the threads of one process take turns.
+_ONE_AT_A_TIME = threading.Lock()
 T = TypeVar("T")
 
 
@@ -116,6 +121,7 @@ def uncertainty(
     *,
     supports: Supports | None = None,
     seconds: float | None = None,
+    executor: Executor | None = None,
     progress: ProgressRequest = None,
 ) -> xr.Dataset:
     """Return how the prediction varies when every uncertain input takes any value of its range.
@@ -129,6 +135,8 @@ def uncertainty(
     supports : "springs" leaves shafts and their inputs out; by default the shafts of a pair that has them
     seconds : processor time after which no further sample begins [s]; a third of the time is for the inputs
         alone. None: all samples are computed
+    executor : what computes the predictions: a cluster of ``open_cluster``, or any executor of
+        ``concurrent.futures``. The result is the same. None: this process
     progress : True (a bar), False (none), None (a bar where the call takes over two seconds), or a function
         that is called with the finished fraction
 
@@ -167,6 +175,10 @@ def uncertainty(
     if not inputs:
         action = "State ranges in [uncertainty], or in [assumed] what is assumed."
         raise refuse("uncertainty", "none", "at least one uncertain input", action)
+    checked_executor(executor)
+    if seconds is not None and executor is not None:
+        action = "Leave it out, and state the number of samples."
+        raise refuse("seconds", seconds, "none with an executor, on which all samples are computed", action)
     deadline = Deadline(
         None if seconds is None else real_number("seconds", seconds, 0.0, above=True, unit="s")
     )
@@ -174,34 +186,30 @@ def uncertainty(
     total = samples + sum(len(end_shares(one)) for one in inputs) + len(forms) + 1
     done = 0
 
-    def row(changes: Sequence[tuple[Input, float]], base: GearPair = pair) -> FloatArray | None:
+    def count(number: int = 1) -> None:
         nonlocal done
-        done += 1
+        done += number
         if progress is not None:
             progress(done / total)
-        return _numbers(base, changes)
 
-    nominal = row(())
+    nominal = _numbers(pair, ())
+    count()
     if nominal is None:
         raise NumericalError("The pair has no prediction with its inputs as given.")
     first = deadline.share(ALONE)
-    alone = 0
-    input_of_row: list[int] = []
-    rows_alone: list[FloatArray | None] = []
-    for j, one in enumerate(inputs):
-        if first.passed:
-            break
-        for share in end_shares(one):
-            input_of_row.append(j)
-            rows_alone.append(row([(one, share)]))
-        alone += 1
-    ends = _ends(inputs, input_of_row, rows_alone, nominal.size)
+    rows_alone: list[list[FloatArray | None]] = []
+    calls = ((pair, one) for one in inputs)
+    for rows_of_input in results_of(_numbers_alone, calls, executor, lambda: first.passed):
+        count(len(rows_of_input))
+        rows_alone.append(rows_of_input)
+    alone = len(rows_alone)
+    ends = _ends(inputs, rows_alone, nominal.size)
     points = sobol_points(importance_of(ends), samples, seed)
     rows = list[FloatArray | None]()
-    for point in points:
-        if deadline.passed:
-            break
-        rows.append(row([(one, float(u)) for one, u in zip(inputs, point, strict=True)]))
+    changes = ([(one, float(u)) for one, u in zip(inputs, point, strict=True)] for point in points)
+    for row in results_of(_numbers, ((pair, one) for one in changes), executor, lambda: deadline.passed):
+        count()
+        rows.append(row)
     has_motion = np.array([dataset is not None for dataset in rows], dtype=bool)
     enough = has_motion.sum() >= least_samples(samples)
     if has_motion.sum() < _LEAST * len(rows) and (enough or len(rows) == samples):
@@ -212,9 +220,11 @@ def uncertainty(
     table = np.array([dataset for dataset in rows if dataset is not None]).reshape(-1, nominal.size)
     dataset = _dataset(pair, inputs, points[: len(rows)][has_motion], table, ends, enough=bool(enough))
     other_forms = np.full((len(forms), nominal.size), np.nan)
-    for number, form in enumerate(forms.values()):
-        if not deadline.passed and (numbers := row((), pair.with_(form))) is not None:
-            other_forms[number] = numbers
+    form_calls = ((pair.with_(form), ()) for form in forms.values())
+    for number, row in enumerate(results_of(_numbers, form_calls, executor, lambda: deadline.passed)):
+        count()
+        if row is not None:
+            other_forms[number] = row
     for column, name in enumerate(QUANTITIES):
         attrs = dataset[name].attrs | {"long_name": f"{dataset[name].attrs['long_name']}, inputs as given"}
         dataset[f"{name}_form"] = ("form", other_forms[:, column], attrs)
@@ -392,18 +402,16 @@ def sobol_points(importance: FloatArray, samples: int, seed: int) -> FloatArray:
 
 
 def _ends(
-    inputs: Sequence[Input], input_of_row: Sequence[int], rows: Sequence[FloatArray | None], columns: int
+    inputs: Sequence[Input], rows_alone: Sequence[Sequence[FloatArray | None]], columns: int
 ) -> FloatArray:
     """(input, end, column) results with each input alone at its ends; for a choice the extremes. NaN:
     refused.
 
-    ``input_of_row``: number of the input that each row varies.
+    ``rows_alone``: for the first inputs, the results with this input alone at each of its ``end_shares``.
     """
     ends = np.full((len(inputs), 2, columns), np.nan)
-    for j, one in enumerate(inputs):
-        if of_input := [
-            row for number, row in zip(input_of_row, rows, strict=True) if number == j and row is not None
-        ]:
+    for j, (one, rows) in enumerate(zip(inputs, rows_alone, strict=False)):
+        if of_input := [row for row in rows if row is not None]:
             ends[j] = (
                 (np.min(of_input, axis=0), np.max(of_input, axis=0))
                 if one.choices
@@ -437,10 +445,15 @@ def varied(pair: GearPair, changes: Sequence[tuple[Input, float]]) -> GearPair:
     return pair.with_(fields) if fields else pair
 
 
+def _numbers_alone(pair: GearPair, one: Input) -> list[FloatArray | None]:
+    """Results of ``_numbers`` with an input alone at each of its ``end_shares``."""
+    return [_numbers(pair, [(one, share)]) for share in end_shares(one)]
+
+
 def _numbers(pair: GearPair, changes: Sequence[tuple[Input, float]]) -> FloatArray | None:
     """Quantities, orders of the bearing force, quantities of unlike teeth and ``FLAGS``. None: no motion."""
     try:
-        with warnings.catch_warnings():
+        with _ONE_AT_A_TIME, warnings.catch_warnings():
             warnings.simplefilter("ignore", LawRangeWarning)
             sampled = varied(pair, changes)
             prediction = predicted(sampled.healthy)

@@ -2,14 +2,17 @@
 
 from validation.studies.analyses import Settings
 from validation.studies.axes import Axis
+from validation.studies.cluster import Cluster, ClusterStopped, open_cluster
 from validation.studies.results import read_results
-from validation.studies.runner import Summary, run_sweep
+from validation.studies.runner import Summary, refuse_other_contents, run_sweep
 from validation.studies.schema import Design, Study, load_study
 from validation.studies.store import Status, StoreError
 from validation.studies.workers import SweepStopped
 
 __all__ = [
     "Axis",
+    "Cluster",
+    "ClusterStopped",
     "Design",
     "Settings",
     "Status",
@@ -18,6 +21,8 @@ __all__ = [
     "Summary",
     "SweepStopped",
     "load_study",
+    "open_cluster",
     "read_results",
+    "refuse_other_contents",
     "run_sweep",
 ]

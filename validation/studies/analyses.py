@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal, Self
@@ -17,11 +18,16 @@ from lumped.fields.section import Section
 from lumped.fields.units import Quantity
 from lumped.model.results import cycle_peak_to_peak, load_range
 from lumped.model.steady_state import steady_state
+from validation.prediction.motion import QUANTITIES, Motion, predict
 
-AnalysisName = Literal["geometry", "lumped", "multibody", "floquet"]
+AnalysisName = Literal["geometry", "lumped", "predict", "multibody", "floquet"]
 Values = dict[str, float]
 Labels = Mapping[str, tuple[str, str]]
 _VERDICT = {"neutral": 2.0, "stable": 1.0, "undecided": 0.0, "unstable": -1.0}
+
+
+class LinearMotion(Warning):
+    """The linear motion stands in for the motion with unilateral contact, which does not exist."""
 
 
 class Settings(Section):
@@ -106,6 +112,13 @@ _LUMPED: Labels = {
     "brake_torque": ("N*m", "brake torque that holds the mean speed"),
     "error_estimate": ("1", "estimate of the largest relative error of the transmission error"),
 }
+_PREDICT: Labels = {
+    **QUANTITIES,
+    "power_loss": ("W", "mean power lost"),
+    "contact_lost": ("1", "1: the mesh force reaches zero in the motion, 0: it does not"),
+    "unstable": ("1", "1: the motion does not return after a small disturbance, 0: it does"),
+    "linear": ("1", "1: the linear motion stands in, in which teeth may pull, 0: teeth push only"),
+}
 _FLOQUET: Labels = {
     "spectral_radius": ("1", "largest modulus of the multipliers"),
     "spectral_radius_error": ("1", "bound on the error of the largest modulus"),
@@ -128,6 +141,20 @@ def _lumped(variation: GearVariation, settings: Settings) -> Values:
         "brake_torque": run.attrs["brake_torque"],
         "error_estimate": run.attrs["error_estimate"],
         **{f"{name}_peak_to_peak": run.attrs[f"{name}_peak_to_peak"] for name in _MOTIONS},
+    }
+
+
+def _predict(variation: GearVariation, settings: Settings) -> Values:
+    assert variation.supports != "rigid"  # a study has supports of the file
+    prediction = predict(variation.pair, supports=variation.supports)
+    linear = prediction.motion is Motion.LINEAR
+    if linear:
+        warnings.warn(prediction.reason, LinearMotion, stacklevel=1)
+    return prediction.numbers | {
+        "power_loss": prediction.loss,
+        "contact_lost": float(prediction.contact_lost),
+        "unstable": float(not prediction.stable),
+        "linear": float(linear),
     }
 
 
@@ -182,6 +209,7 @@ def _motion(pair: GearPair, run: xr.Dataset) -> Values:
 ANALYSES: dict[AnalysisName, Analysis] = {
     "geometry": Analysis(_geometry, _GEOMETRY),
     "lumped": Analysis(_lumped, _LUMPED, own_teeth=True),
+    "predict": Analysis(_predict, _PREDICT, own_teeth=True),
     "multibody": Analysis(_multibody, _MOTION, own_teeth=True),
     "floquet": Analysis(_floquet, _FLOQUET),
 }

@@ -124,7 +124,7 @@ def _with_sensitivity(result: xr.Dataset, cases: CaseList, table: Table) -> xr.D
     """
     if not cases.study.design.sensitivity:
         return result
-    failed = int(np.count_nonzero(table.status >= Status.REFUSED))
+    failed = int(np.count_nonzero(Status.failed_among(table.status)))
     missing = int(np.count_nonzero(table.status == Status.MISSING))
     if failed or missing:
         text = f"no indices: {failed} of {cases.count} cases failed, {missing} are not computed yet"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -74,9 +75,10 @@ def run_sweep(
     study : the study
     folder : output folder; it is created, and holds ``store.sqlite`` and ``results.nc``
     workers : processes of this machine, in which a case may crash without ending the sweep; 0 computes in
-        this process, which starts faster. With ``executor``: how many calls it runs at the same time
-    executor : what runs the cases instead, any executor of ``concurrent.futures``; of a Dask cluster
-        ``distributed.Client(address).get_executor(pure=False)``
+        this process, which starts faster. With an executor that is no ``Cluster``: how many calls it runs at
+        the same time
+    executor : what runs the cases instead: a ``Cluster`` of ``open_cluster``, or any executor of
+        ``concurrent.futures``
     resume : go on where an earlier run of the same study in that folder ended
     retry_failed : with ``resume``, also compute the failed cases again
     case_seconds : longest time of a case [s]; with it, cases run in worker processes of this machine (one
@@ -101,20 +103,20 @@ def run_sweep(
     cases = CaseList(study)
     with (
         stopping_as_interrupt(),
-        workers_of(workers, executor, case_seconds) as (submit, slots),
+        workers_of(workers, executor, case_seconds) as pool,
         _opened(root, cases, resume) as store,
     ):
         status = store.table().status
-        todo = np.flatnonzero((status == Status.MISSING) | (retry_failed & (status >= Status.REFUSED)))
+        todo = np.flatnonzero((status == Status.MISSING) | (retry_failed & Status.failed_among(status)))
         number = todo.size
         evaluator = StudyEvaluator.of(study)
         done = 0
         failed = 0
         numbers: Iterator[int] = iter(todo.tolist())
-        for chunk in chunks_of(evaluator, cases.values, numbers, number, submit, slots, case_seconds):
+        for chunk in chunks_of(evaluator, cases.values, numbers, number, pool, case_seconds):
             store.add(chunk)
             done += len(chunk.rows)
-            failed += sum(code >= Status.REFUSED for _, code, _, _ in chunk.rows)
+            failed += sum(Status(code).failed for _, code, _, _ in chunk.rows)
             if callable(progress):
                 progress(done, number, failed)
         table = store.table()
@@ -130,24 +132,53 @@ def run_sweep(
     )
 
 
-def _opened(root: Path, cases: CaseList, resume: bool) -> Store:
-    """Open the store of a new or empty folder, or with ``resume`` of a folder with this study."""
-    try:
-        root.mkdir(parents=True, exist_ok=True)
-        names = {entry.name for entry in root.iterdir() if not entry.name.startswith(".")}
-    except (FileExistsError, NotADirectoryError):
-        raise refuse("output", root, "a folder", "A file has that name: choose another --output.") from None
-    except OSError as error:
-        reason = f"It cannot be used: {error.strerror}."
-        raise refuse("output", root, "a folder that can be made and read", reason) from error
+def refuse_other_contents(folder: Path, *, resume: bool) -> bool:
+    """Refuse an output folder of a sweep that has something else in it. The folder may be missing.
+
+    Parameters
+    ----------
+    folder : output folder
+    resume : whether the sweep goes on with the store in the folder
+
+    Returns
+    -------
+    bool : whether the folder has results of a sweep
+
+    Raises
+    ------
+    ParameterError : the folder cannot be used, or has something else in it
+    """
+    with _refusals_of(folder):
+        entries = list(folder.iterdir()) if folder.is_dir() else []
+    names = {entry.name for entry in entries if not entry.name.startswith(".")}
     if STORE in names and not resume:
         action = "It holds a sweep: go on with --resume, or choose another --output."
-        raise refuse("output", root, "a new folder", action)
+        raise refuse("output", folder, "a new folder", action)
     if names and STORE not in names:  # the first file of a sweep, so all others are the user's
         action = f"It holds {min(names)}: choose another --output."
-        raise refuse("output", root, "a new or empty folder", action)
+        raise refuse("output", folder, "a new or empty folder", action)
+    return RESULTS in names
+
+
+@contextmanager
+def _refusals_of(folder: Path) -> Iterator[None]:
+    """Refuse a folder that the operating system does not let us use."""
+    try:
+        yield
+    except (FileExistsError, NotADirectoryError):
+        raise refuse("output", folder, "a folder", "A file has that name: choose another --output.") from None
+    except OSError as error:
+        reason = f"It cannot be used: {error.strerror}."
+        raise refuse("output", folder, "a folder that can be made and read", reason) from error
+
+
+def _opened(root: Path, cases: CaseList, resume: bool) -> Store:
+    """Open the store of a new or empty folder, or with ``resume`` of a folder with this study."""
+    with _refusals_of(root):
+        root.mkdir(parents=True, exist_ok=True)
+    has_results = refuse_other_contents(root, resume=resume)
     store = Store(root, cases)
-    if store.new and RESULTS in names:
+    if store.new and has_results:
         store.__exit__()
         action = f"It holds {RESULTS} of something else: choose another --output."
         raise refuse("output", root, "a folder of this study", action)

@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import Any, NamedTuple, Self
 
 import numpy as np
+import numpy.typing as npt
 
 from lumped.cache import processor
 from lumped.errors import StorageError, refuse
@@ -55,11 +56,17 @@ class Status(IntEnum):
     UNEXPECTED = 4
     WORKER_DIED = 5
     TIME_LIMIT = 6
+    LINEAR_MOTION = 7
 
     @property
     def failed(self) -> bool:
         """Whether the case has no outputs."""
-        return self >= Status.REFUSED
+        return Status.REFUSED <= self <= Status.TIME_LIMIT
+
+    @staticmethod
+    def failed_among(codes: npt.NDArray[np.int8]) -> npt.NDArray[np.bool_]:
+        """Return for each code of a status whether the case has no outputs."""
+        return np.isin(codes, [int(status) for status in Status if status.failed])
 
 
 class Provenance(NamedTuple):

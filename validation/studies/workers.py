@@ -10,9 +10,10 @@ import threading
 import time
 import warnings
 from collections import deque
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from contextlib import contextmanager
+from dataclasses import dataclass
 from itertools import islice
 from multiprocessing import forkserver
 from typing import Any
@@ -20,7 +21,9 @@ from typing import Any
 import pebble
 
 from lumped.errors import LawRangeWarning, ParameterError, SpurcheckError, refuse
+from validation.studies.analyses import LinearMotion
 from validation.studies.cases import StudyEvaluator
+from validation.studies.cluster import MOST_WORKERS, ONE_THREAD, Cluster, ClusterStopped, other_versions
 from validation.studies.store import Chunk, Status, provenance
 
 #: Aim of the time of a chunk [s]: what a killed run loses of each worker.
@@ -29,9 +32,8 @@ MAX_CHUNK = 10_000
 #: Longest error text kept with a case, in characters.
 MAX_MESSAGE = 2000
 _START_SECONDS = 60.0
-_ENVIRONMENT = {"PYTHONSAFEPATH": "1"} | dict.fromkeys(
-    ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"
-)
+#: Time after which a sweep looks for workers that joined, also where no case ends [s].
+_LOOK_SECONDS = 1.0
 # Warning filters belong to the process, so the threads of one process take turns.
 _ONE_AT_A_TIME = threading.Lock()
 Submit = Callable[..., Future[Chunk]]
@@ -58,6 +60,8 @@ def evaluate_chunk(
                 continue
             if any(issubclass(w.category, LawRangeWarning) for w in caught):
                 status = Status.OUTSIDE_LAW_RANGE
+            if any(issubclass(w.category, LinearMotion) for w in caught):
+                status = Status.LINEAR_MOTION
             rows.append((case, status, pack(*outputs), None))
     return Chunk(rows, time.perf_counter() - start, provenance())
 
@@ -77,21 +81,44 @@ def _evaluate(evaluator: StudyEvaluator, values: tuple[Any, ...]) -> tuple[Statu
     return Status.OK, outputs, ""
 
 
+@dataclass(frozen=True)
+class Pool:
+    """What runs the chunks of a sweep.
+
+    Attributes
+    ----------
+    submit : starts a call and returns its future
+    slots : returns how many calls run at the same time at present; workers may join and leave
+    """
+
+    submit: Submit
+    slots: Callable[[], int]
+
+
 @contextmanager
-def workers_of(workers: int, executor: Executor | None, limit: float | None) -> Iterator[tuple[Submit, int]]:
-    """Give the function that submits a call, and the number of parallel calls."""
-    if not 0 <= workers <= 1024:
-        raise refuse("workers", workers, "0 to 1024", "Use as many as there are cores.")
+def workers_of(workers: int, executor: Executor | None, limit: float | None) -> Iterator[Pool]:
+    """Give the pool that runs the chunks: an executor, worker processes, or this process."""
+    if not 0 <= workers <= MOST_WORKERS:
+        raise refuse("workers", workers, f"0 to {MOST_WORKERS}", "Use as many as there are cores.")
     if limit is not None and executor is not None:
         action = "Leave it out, or compute with worker processes of this machine."
         raise refuse("case_seconds", limit, "none on an executor or a cluster", action)
-    if executor is not None:
-        yield executor.submit, max(workers, 1)
+    if isinstance(executor, Cluster):
+        if workers:
+            action = "Leave it out: all workers of the cluster are used, also those that join later."
+            raise refuse("workers", workers, "none with a cluster of open_cluster", action)
+        yield Pool(executor.submit, lambda: executor.workers)
+    elif executor is not None:
+        if not workers:
+            action = "Give how many calls the executor runs at the same time; open_cluster knows it itself."
+            raise refuse("workers", workers, f"1 to {MOST_WORKERS} with an executor", action)
+        yield Pool(executor.submit, lambda: workers)
     elif workers or limit is not None:
-        with _processes(max(workers, 1), limit) as submit:
-            yield submit, max(workers, 1)
+        number = max(workers, 1)
+        with _processes(number, limit) as submit:
+            yield Pool(submit, lambda: number)
     else:
-        yield _here, 1
+        yield Pool(_here, lambda: 1)
 
 
 def _here(function: Callable[..., Chunk], *arguments: Any) -> Future[Chunk]:
@@ -128,7 +155,7 @@ def _context() -> Any:
     context = multiprocessing.get_context("forkserver")
     context.set_forkserver_preload(["validation.studies.analyses", "floquet.gear.multipliers", "multibody"])
     before = dict(os.environ)
-    os.environ.update(_ENVIRONMENT)
+    os.environ.update(ONE_THREAD)
     try:
         forkserver.ensure_running()
     finally:
@@ -137,78 +164,131 @@ def _context() -> Any:
     return context
 
 
+@dataclass(frozen=True)
+class Batch:
+    """Cases that one call computes.
+
+    Attributes
+    ----------
+    cases : numbers of the cases
+    alone : whether no other call runs meanwhile
+    """
+
+    cases: list[int]
+    alone: bool = False
+
+
+class Cases:
+    """The cases that are still to be computed, in batches.
+
+    A batch whose worker died is divided into single cases. A worker of Dask has several calls, and where the
+    worker dies Dask blames all of them. A single case with a dead worker therefore runs again alone.
+
+    Parameters
+    ----------
+    numbers : numbers of the cases
+    count : how many they are
+    most_seconds : aim of the time of a batch [s]
+    """
+
+    def __init__(self, numbers: Iterator[int], count: int, most_seconds: float) -> None:
+        self._numbers = numbers
+        self._remaining = count
+        self._most_seconds = most_seconds
+        self._singles: deque[int] = deque()
+        self._suspects: deque[int] = deque()
+        self._seconds = 0.0  # mean time of a case; 0: no case is computed yet
+
+    def batches(self, running: Collection[Batch], slots: int) -> Iterator[Batch]:
+        """Yield batches that can run beside the running batches, until each slot has two."""
+        if any(batch.alone for batch in running):
+            return
+        if self._suspects:
+            if not running:
+                yield Batch([self._suspects.popleft()], alone=True)
+            return
+        for _ in range(2 * slots - len(running)):
+            if self._singles:
+                yield Batch([self._singles.popleft()])
+            elif cases := list(islice(self._numbers, self._size(slots))):
+                yield Batch(cases)
+            else:
+                return
+
+    def _size(self, slots: int) -> int:
+        """Number of cases in a batch."""
+        if not self._seconds:
+            return 1
+        return max(min(int(self._most_seconds / self._seconds), self._remaining // (4 * slots), MAX_CHUNK), 1)
+
+    def again(self, batch: Batch) -> None:
+        """Compute the cases of a batch again, one by one, or a single case alone."""
+        (self._suspects if len(batch.cases) == 1 else self._singles).extend(batch.cases)
+
+    def computed(self, chunk: Chunk) -> None:
+        """Count the cases of a chunk and learn the time of a case."""
+        self._remaining -= len(chunk.rows)
+        mean = max(chunk.seconds / len(chunk.rows), 1e-6)
+        self._seconds = 0.8 * self._seconds + 0.2 * mean if self._seconds else mean
+
+
 def chunks_of(
     evaluator: StudyEvaluator,
     values: Callable[[Sequence[int]], Sequence[tuple[Any, ...]]],
     numbers: Iterator[int],
     count: int,
-    submit: Submit,
-    slots: int,
+    pool: Pool,
     limit: float | None,
 ) -> Iterator[Chunk]:
     """Yield the outcomes of cases in the order of their completion, each case once.
 
-    A chunk is divided into single cases if it takes longer than one case may take (``limit`` [s]), or if
-    its worker dies. ``submit`` and ``slots`` come from ``workers_of``.
+    A chunk is divided if it takes longer than one case may take (``limit`` [s]), or if its worker dies; see
+    ``Cases``. ``pool`` comes from ``workers_of``.
     """
-    # seconds: mean time of a case, 0 where it is not known yet
-    remaining = count
-    seconds = 0.0
-    singles: deque[int] = deque()
-    running: dict[Future[Chunk], list[int]] = {}
-    most_seconds = CHUNK_SECONDS if limit is None else min(CHUNK_SECONDS, limit / 4.0)
+    queue = Cases(numbers, count, CHUNK_SECONDS if limit is None else min(CHUNK_SECONDS, limit / 4.0))
+    running: dict[Future[Chunk], Batch] = {}
     while True:
-        while len(running) < 2 * slots:
-            size = min(int(most_seconds / seconds), remaining // (4 * slots), MAX_CHUNK) if seconds else 1
-            cases = [singles.popleft()] if singles else list(islice(numbers, max(size, 1)))
-            if not cases:
-                break
+        for batch in queue.batches(list(running.values()), max(pool.slots(), 1)):
             try:
-                running[submit(evaluate_chunk, evaluator, cases, values(cases))] = cases
+                running[pool.submit(evaluate_chunk, evaluator, batch.cases, values(batch.cases))] = batch
             except Exception as error:
                 raise _stopped(error) from error
         if not running:
             return
-        for future in wait(running, return_when=FIRST_COMPLETED).done:
-            cases = running.pop(future)
-            chunk = _outcome(future, cases, limit)
+        for future in wait(running, timeout=_LOOK_SECONDS, return_when=FIRST_COMPLETED).done:
+            batch = running.pop(future)
+            chunk = _outcome(future, batch, limit)
             if chunk is None:
-                singles += cases
-                continue
-            remaining -= len(cases)
-            mean = max(chunk.seconds / len(cases), 1e-6)
-            seconds = 0.8 * seconds + 0.2 * mean if seconds else mean
-            yield chunk
+                queue.again(batch)
+            else:
+                queue.computed(chunk)
+                yield chunk
 
 
 def _stopped(error: Exception) -> SweepStopped:
+    if isinstance(error, ClusterStopped):
+        return SweepStopped(f"{error} What is computed is stored: go on with --resume.")
     return SweepStopped(
         f"The workers cannot run cases ({type(error).__name__}: {error}): check that they run and have this "
         "version of spurcheck, then run the same command with --resume."
     )
 
 
-def _outcome(future: Future[Chunk], cases: list[int], limit: float | None) -> Chunk | None:
-    """Outcomes of a finished chunk. None: the cases of the chunk run again one by one."""
+def _outcome(future: Future[Chunk], batch: Batch, limit: float | None) -> Chunk | None:
+    """Outcomes of a finished chunk. None: the cases of the batch run again, in smaller batches."""
     try:
         chunk = future.result()
     except Exception as error:
         late = isinstance(error, TimeoutError) and limit is not None
         # Dask's error is compared by its name, for Dask is optional.
-        died = isinstance(error, pebble.ProcessExpired) or type(error).__name__ == "KilledWorker"
-        if not late and not died:
+        of_dask = type(error).__name__ == "KilledWorker"
+        if not late and not of_dask and not isinstance(error, pebble.ProcessExpired):
             raise _stopped(error) from error
-        if len(cases) > 1:
+        if len(batch.cases) > 1 or (of_dask and not batch.alone):
             return None
         status = Status.TIME_LIMIT if late else Status.WORKER_DIED
         text = f"longer than {limit:g} s" if late else "the worker process died on this case"
-        return Chunk([(cases[0], status, None, text)], 0.0, provenance())
-    theirs = chunk.provenance
-    ours = provenance()
-    if theirs[:2] != ours[:2]:
-        raise SweepStopped(
-            f"A worker runs {theirs.versions}, code {theirs.code[:12]}, but this process {ours.versions}"
-            f", code {ours.code[:12]}: install the same code and the same versions, or results depend on "
-            "where a case ran."
-        )
+        return Chunk([(batch.cases[0], status, None, text)], 0.0, provenance())
+    if (difference := other_versions("A worker", chunk.provenance, provenance())) is not None:
+        raise SweepStopped(difference)
     return chunk

@@ -1,8 +1,8 @@
 """Do verdicts agree with published boxes that hold every edge of instability of a Mathieu-like equation?
 
-A. Fernandez, capdmathieu, 2020 (github.com/aaroncapd/capdmathieu): boxes (a, b) by interval arithmetic. Outside
-of them x'' + (a + b (cos t + eps cos 2t)) x = 0 has no edge of instability. So all points of a region that boxes
-enclose have one verdict. The boxes are by another program.
+A. Fernandez, capdmathieu, 2020 (github.com/aaroncapd/capdmathieu): boxes (a, b) by interval arithmetic.
+Outside of them x'' + (a + b (cos t + eps cos 2t)) x = 0 has no edge of instability. So all points of a region
+that boxes enclose have one verdict. The boxes are by another program.
 
 ``python -m tests.evidence.floquet.published_boxes FOLDER`` prints the table of docs/verification/floquet.md;
 FOLDER holds the files ``mathieu_*.txt`` of that work, which are not part of this repository.

@@ -34,6 +34,8 @@ def command(tmp_path, monkeypatch):
             (tmp_path / "study.toml").write_text(STUDY.format(values=values))
         words = ["sweep", "study.toml"]
         for name, value in ({"workers": 0} | options).items():
+            if value is None:
+                continue
             words += [f"--{name.replace('_', '-')}", *([] if value is True else [str(value)])]
         result = invoke(*words)
         return result.exit_code, result.output
@@ -68,6 +70,18 @@ def test_a_failed_case_is_1_and_listed(command):
 def test_refused_options_leave_the_folder_free(command, options):
     assert command(**options)[0] == REFUSED
     assert command()[0] == OK
+
+
+@pytest.mark.parametrize(("options", "words"), [
+    ({"cluster": "head"}, "--cluster = head: allowed tcp://HOST:PORT"),
+    ({"cluster": "local:2", "workers": 2}, "--workers = 2: allowed none with --cluster"),
+    ({"wait_seconds": 5}, "--wait-seconds = 5.0: allowed none without --cluster"),
+])  # fmt: skip
+def test_a_refused_cluster_leaves_no_folder(command, tmp_path, options, words):
+    code, text = command(**{"workers": None} | options)
+    assert code == REFUSED
+    assert words in text
+    assert not (tmp_path / "study-sweep").exists()
 
 
 def test_a_store_that_cannot_be_written_is_3(command, tmp_path):

@@ -1,5 +1,6 @@
 """Do the samples say what the uncertain inputs do? Closed forms where the result is known."""
 
+from concurrent.futures import ThreadPoolExecutor
 from types import SimpleNamespace
 
 import numpy as np
@@ -107,12 +108,23 @@ def test_a_pair_without_uncertain_inputs_is_refused():
         uncertainty(pair, 16)
 
 
+def test_a_time_limit_has_no_meaning_on_an_executor():
+    with ThreadPoolExecutor(1) as executor:
+        with pytest.raises(ParameterError, match=r"seconds = 5.*none with an executor"):
+            uncertainty(LINEAR, 16, seconds=5.0, executor=executor)
+        with pytest.raises(ParameterError, match=r"an executor of concurrent\.futures"):
+            uncertainty(LINEAR, 16, executor="tcp://head:8786")
+
+
 def test_the_first_dimensions_are_those_of_the_inputs_that_matter_most():
     """Shares 0.2, 1 and 0.5: of a refused end nothing is known, and each result is measured by itself."""
     inputs = [SimpleNamespace(choices=choices) for choices in ((), (), "abc")]
-    rows = [[0.0, 5.0, *[0.0] * 4], None, [0.1, 5.0, *[0.0] * 4], *np.eye(6)[[0, 2]] * 0.5]
-    rows += [np.eye(6)[0] * 0.1, np.zeros(6), np.eye(6)[0] * 0.25]
-    ends = _ends(inputs, [0, 1, 0, 1, 1, 2, 2, 2], rows, 6)
+    rows = [
+        [[0.0, 5.0, *[0.0] * 4], [0.1, 5.0, *[0.0] * 4]],
+        [None, *np.eye(6)[[0, 2]] * 0.5],
+        [np.eye(6)[0] * 0.1, np.zeros(6), np.eye(6)[0] * 0.25],
+    ]
+    ends = _ends(inputs, rows, 6)
     share = importance_of(ends)
     np.testing.assert_allclose(share, [0.2, 1.0, 0.5])
     sobol = qmc.Sobol(3, rng=np.random.default_rng(3)).random(8)

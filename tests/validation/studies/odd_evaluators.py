@@ -3,6 +3,8 @@
 import itertools
 import os
 import signal
+import time
+from pathlib import Path
 
 
 class Odd:
@@ -28,3 +30,26 @@ class Odd:
     def prints(self):
         print("progress of a library", flush=True)
         os.write(1, b"and of its compiled part")
+
+
+class Slow:
+    """An evaluator that takes its time, and notes in a folder which processes computed cases.
+
+    With ``processes`` a case waits until so many processes have begun a case, for half a minute at most.
+    """
+
+    def __init__(self, inner, folder, seconds=0.01, processes=1):
+        self.inner = inner
+        self.folder = folder
+        self.seconds = seconds
+        self.processes = processes
+        self.outputs = inner.outputs
+
+    def __call__(self, values):
+        Path(self.folder, str(os.getpid())).touch()
+        time.sleep(self.seconds)
+        for _ in range(300):
+            if len(os.listdir(self.folder)) >= self.processes:
+                break
+            time.sleep(0.1)
+        return self.inner(values)

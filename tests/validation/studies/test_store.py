@@ -45,7 +45,7 @@ def test_what_was_added_comes_back_bit_for_bit_and_the_last_outcome_counts(cases
 
 
 def test_the_status_codes_are_those_of_the_stores_there_are():
-    names = "MISSING OK OUTSIDE_LAW_RANGE REFUSED NUMERICAL UNEXPECTED WORKER_DIED TIME_LIMIT"
+    names = "MISSING OK OUTSIDE_LAW_RANGE REFUSED NUMERICAL UNEXPECTED WORKER_DIED TIME_LIMIT LINEAR_MOTION"
     assert {status.name: int(status) for status in Status} == {n: k - 1 for k, n in enumerate(names.split())}
 
 

@@ -1,18 +1,17 @@
 """Does a sweep give the same bytes wherever its cases run, and survive cases that end a worker?"""
 
-import os
 import signal
 import subprocess
 import sys
 import time
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 
 from lumped.errors import ParameterError
-from validation.studies import Status, StoreError, SweepStopped, run_sweep, runner, workers
+from validation.studies import Cluster, Status, StoreError, SweepStopped, run_sweep, runner, workers
 from validation.studies.cases import CaseList, StudyEvaluator
 from validation.studies.store import provenance, read_table
 
@@ -60,8 +59,104 @@ def test_any_executor_gives_the_same_bytes(study, tmp_path, undisturbed):
         assert run_sweep(study, tmp_path, executor=executor, workers=2).results.read_bytes() == undisturbed
         with pytest.raises(ParameterError, match="case_seconds"):
             run_sweep(study, tmp_path / "limited", executor=executor, case_seconds=1.0)
+        with pytest.raises(ParameterError, match="workers = 0: allowed 1 to 1024 with an executor"):
+            run_sweep(study, tmp_path / "none", executor=executor)
     with pytest.raises(SweepStopped, match="after shutdown"):
-        run_sweep(study, tmp_path / "closed", executor=executor)
+        run_sweep(study, tmp_path / "closed", executor=executor, workers=1)
+
+
+class Records:
+    """A pool whose calls end when the test says so, and whose number of workers changes."""
+
+    def __init__(self, workers):
+        self.workers = workers
+        self.calls = {}
+
+    def submit(self, function, *arguments):
+        future = Future()
+        self.calls[future] = arguments
+        return future
+
+    def slots(self):
+        return self.workers
+
+    def end(self, *cases, error=None):
+        """End the calls with these cases, or all calls."""
+        for future, arguments in list(self.calls.items()):
+            if not cases or set(arguments[1]) & set(cases):
+                del self.calls[future]
+                if error is None:
+                    future.set_result(workers.evaluate_chunk(*arguments))
+                else:
+                    future.set_exception(error)
+
+    def running(self):
+        return sorted(case for arguments in self.calls.values() for case in arguments[1])
+
+
+class KilledWorker(Exception):
+    """Dask's error of the same name."""
+
+
+def chunks(study, records):
+    """Outcomes of the study's cases on a pool that keeps a record."""
+    cases = CaseList(study)
+    pool = workers.Pool(records.submit, records.slots)
+    return workers.chunks_of(
+        StudyEvaluator.of(study), cases.values, iter(range(cases.count)), cases.count, pool, None
+    )
+
+
+def test_workers_that_join_later_get_cases(study, monkeypatch):
+    """A worker has two calls, one that runs and the next one: 2 calls of one worker, 8 of four workers."""
+    monkeypatch.setattr(workers, "_LOOK_SECONDS", 0.01)
+    monkeypatch.setattr(workers, "CHUNK_SECONDS", 0.0)
+    records = Records(1)
+    sizes = []
+
+    def slots():  # the sweep asks at each of its looks
+        sizes.append(len(records.calls))
+        if len(sizes) == 5:
+            records.workers = 4
+        if len(sizes) == 10:
+            records.end(0)
+        return records.workers
+
+    records.slots = slots
+    next(chunks(study, records))
+    assert sizes == [0, 2, 2, 2, 2, 8, 8, 8, 8, 8][: len(sizes)]
+
+
+def test_the_slots_of_a_cluster_are_its_workers_at_present():
+    cluster = object.__new__(Cluster)
+    cluster._threads = {"tcp://a:1": 1}
+    with workers.workers_of(0, cluster, None) as pool:
+        assert pool.slots() == 1
+        cluster._threads = {"tcp://a:1": 1, "tcp://b:1": 4}  # a worker computes one case at a time
+        assert pool.slots() == 2
+
+
+def test_cases_of_a_lost_worker_run_again_and_a_case_has_the_blame_only_alone(study, monkeypatch):
+    """Two workers die with two calls each. One of the four cases is to blame: that with number 2."""
+    monkeypatch.setattr(workers, "_LOOK_SECONDS", 0.01)
+    monkeypatch.setattr(workers, "CHUNK_SECONDS", 0.0)
+    records = Records(2)
+    seen = []
+
+    def slots():
+        seen.append(records.running())
+        if len(seen) == 2 or records.running() == [2]:
+            records.end(error=KilledWorker())
+        elif len(seen) > 2:
+            records.end()
+        return records.workers
+
+    records.slots = slots
+    rows = [row for chunk in chunks(study, records) for row in chunk.rows]
+    assert sorted(row[0] for row in rows) == list(range(120))
+    assert [row[0] for row in rows if row[1] == Status.WORKER_DIED] == [2]
+    assert seen[1] == [0, 1, 2, 3]
+    assert sorted([running for running in seen if running][1:5]) == [[0], [1], [2], [3]]
 
 
 def test_workers_of_other_code_stop_the_sweep(study, tmp_path, monkeypatch):
@@ -121,25 +216,3 @@ def test_after_a_kill_or_an_interrupt_resuming_gives_the_same_bytes(
     summary = run_sweep(study, out, resume=True)
     assert (summary.before, summary.computed) == (before, 120 - before)
     assert summary.results.read_bytes() == undisturbed
-
-
-@pytest.mark.slow
-# The cluster's own event loop and sockets may outlive it by a moment.
-@pytest.mark.filterwarnings("ignore::ResourceWarning", "ignore::DeprecationWarning")
-def test_a_dask_cluster_gives_the_same_bytes_also_after_losing_a_worker(study, tmp_path, undisturbed):
-    distributed = pytest.importorskip("distributed", reason="needs distributed (extra: cluster)")
-    with distributed.LocalCluster(
-        n_workers=2, threads_per_worker=1, protocol="tcp", dashboard_address=":0", silence_logs=50
-    ) as cluster:
-        killed = []
-
-        def kill_one(done, total, failed):
-            if not killed:
-                killed.append(next(iter(cluster.workers.values())).pid)
-                os.kill(killed[0], signal.SIGKILL)
-
-        with distributed.Client(cluster) as client:
-            executor = client.get_executor(pure=False)
-            summary = run_sweep(study, tmp_path, executor=executor, workers=2, progress=kill_one)
-        assert killed
-        assert summary.results.read_bytes() == undisturbed
