@@ -1,0 +1,161 @@
+"""Drawn pairs, each of which must have a prediction or a stated reason: ``python -m tests.evidence.drawn_pairs``.
+
+A user asks as for ``spurcheck init``: teeth, module, face width, speed, torque, half of the time profile
+shifts. The draw is wide on purpose. Modules are those of watches and mills, loads go from idling to far
+beyond what teeth carry, and speeds from one turn a minute to the speed at which the rim bursts. So some pairs
+cannot exist, and they must be refused with the field.
+
+Sources: docs/verification/answers.md.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import time
+import warnings
+from collections import Counter
+from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from lumped.errors import NumericalError, ParameterError
+from validation.exchange.new_pair_file import new_pair
+from validation.prediction.motion import Motion, Prediction, predict
+
+TARGET = Path(__file__).parents[2] / "docs" / "verification" / "answers.json"
+PAIRS = 1000
+SEED = 2026
+#: A dynamic factor below 1 by less than this is rounding: where nothing vibrates the factor is 1.
+_ROUNDING = 1e-9
+
+
+@dataclass(frozen=True)
+class Request:
+    """What a user asks for.
+
+    Attributes
+    ----------
+    teeth : of pinion and gear
+    module, face_width : [mm]
+    speed : of the pinion [rpm]
+    torque : on the pinion [N m]
+    changes : further parameters, path of the field -> value
+    """
+
+    teeth: tuple[int, int]
+    module: float
+    face_width: float
+    speed: float
+    torque: float
+    changes: dict[str, Any]
+
+    @property
+    def text(self) -> str:
+        """The request as options of ``spurcheck init``."""
+        changes = "".join(f" --set {path}={value}" for path, value in self.changes.items())
+        return (
+            f"--teeth {self.teeth[0]}/{self.teeth[1]} --module {self.module:g} --face-width "
+            f"{self.face_width:g} --speed {self.speed:g} --torque {self.torque:g}{changes}"
+        )
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What came of a request.
+
+    Attributes
+    ----------
+    kind : "prediction", "linear motion", "refused", "no motion", or "exception"
+    text : the motion, the refused field, the reason, or the exception
+    request : the request as options
+    """
+
+    kind: str
+    text: str
+    request: str
+
+
+def requests(count: int = PAIRS, seed: int = SEED) -> Iterator[Request]:
+    """The drawn requests; each depends on the seed and on its number alone."""
+    for number in range(count):
+        rng = np.random.default_rng((seed, number))
+        pinion = int(rng.integers(9, 70))
+        gear = round(pinion * math.exp(rng.uniform(-0.5, 1.6)))
+        module = _rounded(math.exp(rng.uniform(math.log(0.3), math.log(16.0))))
+        width = _rounded(module * rng.uniform(4.0, 16.0))
+        speed = _rounded(math.exp(rng.uniform(math.log(5.0), math.log(20_000.0))))
+        load = math.exp(rng.uniform(math.log(2.0), math.log(900.0)))  # N/mm
+        torque = _rounded(load * width * 0.5 * module * pinion * 1e-3)
+        changes: dict[str, Any] = {}
+        if rng.random() < 0.5:
+            changes["pinion.profile_shift"] = round(float(rng.uniform(-0.3, 0.7)), 2)
+            changes["gear.profile_shift"] = round(float(rng.uniform(-0.5, 0.5)), 2)
+        yield Request((pinion, gear), module, width, speed, torque, changes)
+
+
+def _rounded(value: float) -> float:
+    return float(f"{value:.3g}")
+
+
+def answer(request: Request) -> Answer:
+    """Predict the pair of a request, and say what came of it."""
+    warnings.simplefilter("ignore")
+    try:
+        pair = new_pair(
+            request.teeth, request.module, request.face_width, request.speed, request.torque, request.changes
+        )
+        return Answer(*_judged(predict(pair)), request.text)
+    except ParameterError as error:
+        return Answer("refused", error.problems[0].field, request.text)
+    except NumericalError as error:
+        return Answer("no motion", str(error), request.text)
+    except Exception as error:  # every other exception is a fault, which the table shows
+        return Answer("exception", f"{type(error).__name__}: {error}", request.text)
+
+
+def _judged(prediction: Prediction) -> tuple[str, str]:
+    """Kind and text of a prediction: its numbers must be numbers, and a largest force no less than the mean."""
+    wrong = [name for name, value in prediction.numbers.items() if not math.isfinite(value)]
+    if wrong:
+        return "exception", f"{', '.join(wrong)} is no finite number"
+    if prediction.dynamic_factor < 1.0 - _ROUNDING:
+        return "exception", f"dynamic factor {prediction.dynamic_factor:.9g} below 1"
+    if prediction.motion is Motion.LINEAR:
+        return "linear motion", prediction.reason
+    return "prediction", f"{prediction.motion.text}, {prediction.mesh_cycles} mesh cycles"
+
+
+def answers(count: int = PAIRS, seed: int = SEED, processes: int = 1) -> list[Answer]:
+    """Answers to the drawn requests, in the order of the draw."""
+    drawn = list(requests(count, seed))
+    if processes == 1:
+        return [answer(one) for one in drawn]
+    with ProcessPoolExecutor(processes) as pool:
+        return list(pool.map(answer, drawn, chunksize=10))
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--pairs", type=int, default=PAIRS)
+    parser.add_argument("--seed", type=int, default=SEED)
+    parser.add_argument("--processes", type=int, default=2)
+    parser.add_argument("--output", type=Path)
+    arguments = parser.parse_args()
+    start = time.perf_counter()
+    result = answers(arguments.pairs, arguments.seed, arguments.processes)
+    for one in result:
+        if one.kind in ("exception", "linear motion", "no motion"):
+            print(f"{one.kind}: {one.request}\n  {one.text}")
+    print(Counter((one.kind, one.text.partition(":")[0][:90]) for one in result))
+    print(f"{time.perf_counter() - start:.0f} s")
+
+
+if __name__ == "__main__":
+    main()
