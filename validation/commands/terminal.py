@@ -179,7 +179,7 @@ def guarded(command: Callable[..., None]) -> Callable[..., None]:
 
     @functools.wraps(command)
     def run(**kwargs: Any) -> None:
-        from lumped.errors import LawRangeWarning, ParameterError, SpurcheckError
+        from lumped.errors import LawRangeWarning, ParameterError, SpurcheckError, typed_errors
 
         silent = _quiet.set(bool(kwargs.pop("quiet", False)))
         noted_subjects: set[str] = set()
@@ -199,7 +199,8 @@ def guarded(command: Callable[..., None]) -> Callable[..., None]:
                     name: group.make(**{option: kwargs.pop(option) for option in group.options})
                     for name, group in groups.items()
                 }
-                command(**made, **kwargs)
+                with typed_errors():
+                    command(**made, **kwargs)
         except ParameterError as error:
             problems = [
                 replace(p, field=options.get(p.field, p.field), action=_by_options(p.action, options))

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from lumped.errors import NumericalError
+from lumped.errors import NumericalError, typed_errors
 from lumped.model.periodic_system import Supports, with_supports
 from lumped.model.results import PlainMotion, peak_to_peak, plain
 from lumped.model.revolution_motion import Origin
@@ -247,7 +247,8 @@ def predicted(pair: GearPair, samples_of_like_teeth: int = _SAMPLES) -> Predicti
     """
     samples = samples_of_like_teeth if pair.healthy is pair else None
     try:
-        motion = periodic_motion(pair, "unilateral", samples_per_cycle=samples)
+        with typed_errors():
+            motion = periodic_motion(pair, "unilateral", samples_per_cycle=samples)
     except NumericalError as error:
         return _stand_in(pair, samples, error)
     settled = pair.healthy is pair and motion.attributes.get("origin") == Origin.SETTLED.value
