@@ -1,9 +1,12 @@
 """Drawn pairs, each of which must have a prediction or a stated reason: ``python -m tests.evidence.drawn_pairs``.
 
 A user asks as for ``spurcheck init``: teeth, module, face width, speed, torque, half of the time profile
-shifts. The draw is wide on purpose. Modules are those of watches and mills, loads go from idling to far
-beyond what teeth carry, and speeds from one turn a minute to the speed at which the rim bursts. So some pairs
-cannot exist, and they must be refused with the field.
+shifts. One pair of eight has bearings in the wrong unit, one of six another friction law, one of six little
+damping. The draw is wide on purpose: modules of watches and of mills, loads from idling to far beyond what
+teeth carry, speeds from 5 to 20,000 rpm. So some pairs cannot exist, and they must be refused with the field.
+
+Plane finite elements, which ``init`` assumes, take 2 s for a new tooth form. One pair of fifty has them, and
+the others have a model that takes milliseconds. The 58/58 pair that once had no motion comes first.
 
 Sources: docs/verification/answers.md.
 """
@@ -84,7 +87,8 @@ class Answer:
 
 def requests(count: int = PAIRS, seed: int = SEED) -> Iterator[Request]:
     """The drawn requests; each depends on the seed and on its number alone."""
-    for number in range(count):
+    yield Request((58, 58), 2.3, 13.5, 910, 120, {})
+    for number in range(1, count):
         rng = np.random.default_rng((seed, number))
         pinion = int(rng.integers(9, 70))
         gear = round(pinion * math.exp(rng.uniform(-0.5, 1.6)))
@@ -94,6 +98,14 @@ def requests(count: int = PAIRS, seed: int = SEED) -> Iterator[Request]:
         load = math.exp(rng.uniform(math.log(2.0), math.log(900.0)))  # N/mm
         torque = _rounded(load * width * 0.5 * module * pinion * 1e-3)
         changes: dict[str, Any] = {}
+        if number % 50:
+            changes["mesh.stiffness.model"] = str(rng.choice(["energy", "iso6336", "parabolic"]))
+        if rng.random() < 1.0 / 8.0:
+            changes["bearings.stiffness"] = _rounded(10.0 ** rng.uniform(1.0, 15.0))
+        if rng.random() < 1.0 / 6.0:
+            changes["friction.law"] = str(rng.choice(["coulomb", "xu_kahraman", "none"]))
+        if rng.random() < 1.0 / 6.0:
+            changes["mesh.damping_ratio"] = _rounded(10.0 ** rng.uniform(-3.0, -1.0))
         if rng.random() < 0.5:
             changes["pinion.profile_shift"] = round(float(rng.uniform(-0.3, 0.7)), 2)
             changes["gear.profile_shift"] = round(float(rng.uniform(-0.5, 0.5)), 2)
