@@ -26,6 +26,7 @@ from rich.text import Text
 from typer.core import TyperCommand
 
 from validation.files.formatting import number, quantity
+from validation.files.output import WORKING_FOLDER_DELETED, working_folder_deleted
 
 if TYPE_CHECKING:
     from lumped.typing import Progress
@@ -210,6 +211,8 @@ def guarded(command: Callable[..., None]) -> Callable[..., None]:
         except SpurcheckError as error:
             fail(str(error), NUMERICAL)
         except OSError as error:
+            if working_folder_deleted():
+                fail(WORKING_FOLDER_DELETED, REFUSED)
             if error.filename:
                 fail(f"{error.filename}: {error.strerror or type(error).__name__}", REFUSED)
             fail(unprinted(error), NUMERICAL)
