@@ -25,6 +25,7 @@ def writers() -> Mapping[str, Callable[[], str]]:
     """File name -> what writes its text."""
     from computed import (
         agreement,
+        answers,
         diagrams,
         elasticity,
         errata,
@@ -45,6 +46,7 @@ def writers() -> Mapping[str, Callable[[], str]]:
             verification,
             faults,
             mutants,
+            answers,
             agreement,
             errata,
             paper,

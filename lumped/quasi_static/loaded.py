@@ -298,8 +298,9 @@ class StaticMesh:
             f"bearings.{name}.loa_stiffness",
             f"{getattr(bearings, name).loa_stiffness:.3g} N/m",
             f">= {2.0 * self.force / reserve:.2g} N/m at both gears, with which the teeth stay in mesh",
-            f"Under the mesh force of {self.force:.3g} N the bearings give way by {1e3 * self.lengthening:.3g} "
-            f"mm, and the teeth part. A bare number is in N/m: check the unit, as in '200 N/um'.",
+            f"Under the mesh force of {self.force:.3g} N the bearings give way by "
+            f"{1e3 * self.lengthening:.3g} mm, and the teeth part. A bare number is in N/m: check the unit, "
+            "as in '200 N/um'.",
         )
 
     def fit_approach(self, marks: FloatArray, tolerance: float) -> None:

@@ -27,7 +27,7 @@ def zero_division():
 
 
 def overflow():
-    return 1e300.__pow__(2)
+    return (1e300).__pow__(2)
 
 
 @pytest.mark.parametrize("action", [not_invertible, not_finite, zero_division, overflow])

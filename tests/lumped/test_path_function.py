@@ -94,7 +94,10 @@ def test_breaks_that_differ_by_rounding_are_one_break():
 def test_of_breaks_that_differ_by_rounding_the_switch_stays():
     at = np.nextafter(1.0, 2.0)
     step = PathFunction.fit(
-        lambda x: np.where(x < at, -1.0, 2.0), [0.0, 1.0, at, np.nextafter(at, 2.0), 3.0], [at], tolerance=1e-12
+        lambda x: np.where(x < at, -1.0, 2.0),
+        [0.0, 1.0, at, np.nextafter(at, 2.0), 3.0],
+        [at],
+        tolerance=1e-12,
     )
     np.testing.assert_array_equal(step.breaks, [0.0, at, 3.0])
 

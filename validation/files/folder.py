@@ -51,8 +51,8 @@ def check_target(out: Path, *, force: bool) -> Path:
 def whole_folder(out: Path, *, force: bool) -> Iterator[Path]:
     """Yield an empty folder to write into. At the end the folder is renamed to ``out``.
 
-    After a failure or an interruption no temporary files remain, and earlier results are unchanged. What a run
-    left that was killed is removed first.
+    After a failure or an interruption no temporary files remain, and earlier results are unchanged. Folders
+    of killed runs are removed first.
     """
     remove_abandoned(check_target(out, force=force).parent)
     target = check_target(out, force=force)

@@ -58,7 +58,8 @@ def test_a_motion_changes_little_with_the_torque():
     """
     pair = new_pair((58, 58), 2.3, 13.5, 910, 120)
     below, orbit, above = (
-        floquet.periodic_orbit(pair.with_(operating__pinion_torque=torque)) for torque in (119.0, 120.0, 121.0)
+        floquet.periodic_orbit(pair.with_(operating__pinion_torque=torque))
+        for torque in (119.0, 120.0, 121.0)
     )
     assert orbit.contact_lost
     assert orbit.stable

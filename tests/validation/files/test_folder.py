@@ -200,11 +200,14 @@ class TestAKilledRun:
 
 
 @pytest.mark.skipif(os.name != "posix", reason="other systems keep a folder in use")
-@pytest.mark.parametrize("command", [["report", "-o", "r"], ["simulate", "nasa_28_28", "-o", "x.nc"], ["init"]])
+@pytest.mark.parametrize(
+    "command", [["report", "-o", "r"], ["simulate", "nasa_28_28", "-o", "x.nc"], ["init"]]
+)
 def test_a_deleted_working_folder_is_named(tmp_path, command):
     here = tmp_path / "gone"
     here.mkdir()
-    code = f"import os; os.chdir({str(here)!r}); os.rmdir({str(here)!r}); from validation.cli import main; main()"
+    code = f"import os; os.chdir({str(here)!r}); os.rmdir({str(here)!r})"
+    code += "; from validation.cli import main; main()"
     done = subprocess.run([sys.executable, "-c", code, *command], capture_output=True, text=True, check=False)
     assert done.returncode == 2
     assert "The working folder was deleted" in done.stderr

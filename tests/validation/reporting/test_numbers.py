@@ -254,7 +254,7 @@ def test_the_table_of_forces(written):
     pressure = np.sqrt(np.maximum(load, 0.0) * modulus / (2.0 * math.pi * width * radius)).max()
     expected = {
         "static mesh force": (recomputed.static_force(parameters), "N"),
-        "mean mesh force": (total.mean(), "N", "less what friction carries"),
+        "mean mesh force": (total.mean(), "N", "static less what friction carries"),
         "largest mesh force": (total.max(), "N"),
         "smallest mesh force": (max(total.min(), 0.0), "N", "0 is contact loss"),
         "largest load of one tooth pair": (load.max(), "N"),

@@ -73,7 +73,7 @@ def _forces_table(results: Results) -> Table:
     largest_load = float(cycle["normal_load"].max())
     numbers = [
         NamedNumber("static mesh force", prediction.static_force, "N", "torque over base radius"),
-        NamedNumber("mean mesh force", prediction.mean_force, "N", "the static one less what friction carries"),
+        NamedNumber("mean mesh force", prediction.mean_force, "N", "static less what friction carries"),
         NamedNumber("largest mesh force", float(prediction.mesh_force.max()), "N"),
         NamedNumber(
             "smallest mesh force", max(float(prediction.mesh_force.min()), 0.0), "N", "0 is contact loss"
