@@ -55,8 +55,8 @@ _SAME_SWING = 0.3
 #: Most mesh cycles of the first run that settles; each next run has twice as many. Most such runs.
 _SETTLING = 400
 _RUNS = 5
-#: Most steps of a run that settles, beyond the first run: about ten seconds.
-_MOST_STEPS = 20_000_000
+#: Most steps of a run that settles, beyond the first run: some seconds.
+_MOST_STEPS = 5_000_000
 #: Mesh cycles of the longest motion that is sought. A run is compared with itself over so many times as many.
 _MOST_CYCLES = 8
 _COMPARED = 8
@@ -321,6 +321,8 @@ class Shooting:
             # Where pairs touch within long steps, a slow pair repeats to a part of a millionth and no better.
             accepted = _REPEATS if repeats.size else _ACCEPTED
             swing = float(np.ptp(settling.states[:, :m] @ deflection))
+            if not repeats.size and radius < _FADED:
+                continue  # settling is fast, so no motion nearby is waiting to be closed
             most = int(repeats[0]) if repeats.size else _MOST_CYCLES
             # A motion that repeats after n cycles may repeat after a divisor of n.
             for cycles in (n for n in range(1, most + 1) if not repeats.size or most % n == 0):
