@@ -3,6 +3,7 @@
 # make lint     ruff and mypy --strict
 # make reproduce   compute figures, claims and errata of the published model again, in build/reproductions/
 # make evidence   compute the evidence about the program again (two minutes) and store it in validation/evidence.json
+# make answers  predict 1,000 drawn pairs again: each has a prediction or a stated reason (some minutes)
 # make mutants  change 60 drawn lines one by one, the nearest tests judge each (an hour); a second start goes on
 # make dist     build sdist and wheel into dist/, check them, try the wheel on every Python 3.11 or later found here
 # make lowest   try the oldest releases that pyproject.toml allows with a quick report (four minutes of processor time)
@@ -18,7 +19,7 @@ LOWEST ?= build/lowest
 export OPENBLAS_NUM_THREADS ?= 1
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 
-.PHONY: report reproduce evidence mutants test lint docs dist lowest clean
+.PHONY: report reproduce evidence answers mutants test lint docs dist lowest clean
 
 report: $(VENV)/.ready
 	$(BIN)/spurcheck report --output $(OUT) --force
@@ -30,6 +31,9 @@ reproduce: $(VENV)/.ready
 
 evidence: $(VENV)/.ready-test
 	$(BIN)/python -m tests.evidence
+
+answers: $(VENV)/.ready-test
+	$(BIN)/python -m tests.evidence.drawn_pairs --output docs/verification/answers.json
 
 mutants: $(VENV)/.ready-test
 	$(BIN)/python -m tests.evidence.mutants --output docs/verification/mutants.json

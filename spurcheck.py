@@ -150,7 +150,7 @@ def _find(name: str) -> object:
 
 
 def _explained(name: str, function: Any) -> Any:
-    """Wrap a function so that a call with wrong arguments explains the mistake.
+    """Wrap a function: a call with wrong arguments explains the mistake, and every error is a typed one.
 
     The message names the wrong argument and the place where the value belongs.
     """
@@ -164,7 +164,10 @@ def _explained(name: str, function: Any) -> Any:
             signature.bind(*arguments, **named)
         except TypeError as error:
             raise TypeError(f"spurcheck.{name}: {error}. {advice(str(error), named)}") from None
-        return function(*arguments, **named)
+        from lumped.errors import typed_errors
+
+        with typed_errors():
+            return function(*arguments, **named)
 
     def advice(error: str, named: dict[str, Any]) -> str:
         word = next((key for key in named if key not in signature.parameters), "")

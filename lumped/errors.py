@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -102,6 +104,49 @@ class StorageError(SpurcheckError, OSError):
         """Return the error for a file or folder that cannot be written."""
         reason = error.strerror or str(error) or type(error).__name__
         return cls(f"{path}: cannot be written: {reason}. Free space or choose another place.")
+
+
+#: Modules that read files. An error that begins in one of them is about the content of a file.
+_READERS = ("h5py", "h5netcdf", "netCDF4", "json", "tomllib", "zipfile", "zlib", "openpyxl", "scipy.io")
+
+
+@contextmanager
+def typed_errors() -> Iterator[None]:
+    """Raise errors of libraries as typed errors. Every public function of ``spurcheck`` runs inside.
+
+    - An error of linear algebra or of arithmetic becomes a ``NumericalError``.
+    - A file that cannot be opened, and an error that begins in a reader of files, become a
+      ``ParameterError`` of the field "file".
+
+    Any other error is a fault of the program, or of a function of the user, and passes.
+    """
+    try:
+        yield
+    except (SpurcheckError, MemoryError, RecursionError):
+        raise
+    except (np.linalg.LinAlgError, ArithmeticError) as error:
+        raise NumericalError(
+            f"The computation failed: {error or type(error).__name__}. A value of the pair may be far from "
+            "usual: look at the notes of spurcheck.validity_flags, and at the units of stiffness and mass."
+        ) from error
+    except Exception as error:
+        if isinstance(error, OSError) and error.filename is not None:
+            reason = error.strerror or type(error).__name__
+            raise refuse("file", str(error.filename), "a file that can be read", f"{reason}.") from error
+        if (reader := _reader(error)) is not None:
+            action = f"It is damaged, or of another kind: save it again. ({reader}: {shown(str(error), 120)})"
+            raise refuse("file", "its content", "a file that is complete", action) from error
+        raise
+
+
+def _reader(error: Exception) -> str | None:
+    """The module of ``_READERS`` in which an error begins; None: the error begins elsewhere."""
+    place = error.__traceback__
+    module = ""
+    while place is not None:
+        module = str(place.tb_frame.f_globals.get("__name__", ""))
+        place = place.tb_next
+    return next((name for name in _READERS if f"{module}.".startswith(f"{name}.")), None)
 
 
 class LawRangeWarning(UserWarning):

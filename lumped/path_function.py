@@ -35,6 +35,8 @@ _MAX_CUTS = 44
 #: share of the shorter piece, and to this share of the largest value.
 _BEYOND = 0.25
 _SMOOTH = 1e-6
+#: Breaks that are closer than this share of the interval differ by rounding alone, so they are one break.
+_ROUNDING = 1e-13
 #: Pieces that are longer than this share of the interval err by the tolerance at most, see
 #: ``PathFunction.fit``.
 _FULL_LENGTH = 0.125
@@ -181,6 +183,8 @@ class PathFunction(DisplayedResult):
 
         The callable is sampled strictly inside each piece (Chebyshev points of the first kind), so one-sided
         limits at a break are taken from the right piece. All pieces of a round are sampled in one call.
+        Breaks that differ by rounding count as one: a polynomial on a piece as short as the rounding of its
+        positions has slopes that are rounding over rounding.
 
         Parameters
         ----------
@@ -197,8 +201,9 @@ class PathFunction(DisplayedResult):
         NumericalError : a value is not finite, or a piece does not converge, as when a kink is missing from
             ``breaks``
         """
-        low = np.array(breaks[:-1], dtype=float)
-        high = np.array(breaks[1:], dtype=float)
+        breaks = _distinct_breaks(np.asarray(breaks, dtype=float), np.asarray(switches, dtype=float))
+        low = breaks[:-1].copy()
+        high = breaks[1:].copy()
         most = max(_MAX_PIECES, 4 * low.size)  # a table brings as many pieces as it has points
         result: list[tuple[FloatArray, FloatArray, FloatArray]] = []
         for last in [False] * _MAX_CUTS + [True]:
@@ -245,6 +250,28 @@ def _coefficients(series: FloatArray, half: FloatArray) -> FloatArray:
     """Coefficients of ``PathFunction``, from series (pieces, terms) on pieces of half lengths (pieces,)."""
     powers = series @ _TO_POWERS / half[:, None] ** np.arange(FIT_DEGREE + 1)
     return np.asarray(powers.T[::-1], dtype=np.float64)
+
+
+def one_of_each(marks: FloatArray, near: float, rank: NDArray[np.generic]) -> FloatArray:
+    """Return one mark of each group of marks that follow each other in steps below ``near``.
+
+    Parameters
+    ----------
+    marks : (k,) increasing
+    near : smallest step between two marks that differ
+    rank : (k,) the first mark with the highest rank of a group stays
+    """
+    group = np.cumsum(np.diff(marks, prepend=-np.inf) >= near)
+    order = np.lexsort((marks, -rank.astype(np.int64), group))
+    first = np.diff(group[order], prepend=-1) != 0
+    return np.asarray(marks[order[first]], dtype=np.float64)
+
+
+def _distinct_breaks(breaks: FloatArray, switches: FloatArray) -> FloatArray:
+    """Breaks that differ by more than rounding. Of close ones an end stays, else a switch, else the first."""
+    rank = np.isin(breaks, switches).astype(np.int64)
+    rank[[0, -1]] = 2
+    return one_of_each(breaks, _ROUNDING * (breaks[-1] - breaks[0]), rank)
 
 
 def shifted(coefficients: Array, by: ArrayLike) -> Array:

@@ -28,6 +28,9 @@ from validation.commands.sweep import sweep
 from validation.commands.terminal import NUMERICAL, Once, unprinted
 from validation.stop_signals import interrupt_once
 
+#: Fewer columns in the variable COLUMNS are a mistake of the terminal.
+_FEWEST_COLUMNS = 20
+
 
 class Commands(TyperGroup):
     """Group of all commands. An unknown command or option is refused with the command to type instead."""
@@ -115,6 +118,13 @@ def _open_streams() -> None:
             stream.reconfigure(errors="replace")
 
 
+def _forget_narrow_terminal() -> None:
+    """Remove a width in COLUMNS on which nothing can be read. With 0 columns every table would be empty."""
+    columns = os.environ.get("COLUMNS", "")
+    if columns.lstrip("-").isdigit() and int(columns) < _FEWEST_COLUMNS:
+        del os.environ["COLUMNS"]
+
+
 def main() -> None:
     """Entry point of the installed command."""
     # Must be set before numpy is imported. The matrices are small: BLAS threads only wait for each other.
@@ -122,6 +132,7 @@ def main() -> None:
     # Results live until the end. The default garbage collection would take 5 % of the time of a report.
     gc.set_threshold(1_000_000)
     _open_streams()
+    _forget_narrow_terminal()
     interrupt_once()  # to the end of the process: an impatient Ctrl-C prints no traceback
     try:
         app(prog_name="spurcheck")

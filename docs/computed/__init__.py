@@ -25,6 +25,7 @@ def writers() -> Mapping[str, Callable[[], str]]:
     """File name -> what writes its text."""
     from computed import (
         agreement,
+        answers,
         diagrams,
         elasticity,
         errata,
@@ -48,6 +49,7 @@ def writers() -> Mapping[str, Callable[[], str]]:
             faults,
             mutants,
             own_system,
+            answers,
             agreement,
             errata,
             paper,

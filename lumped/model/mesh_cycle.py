@@ -19,7 +19,7 @@ from lumped.errors import LikeTeethWarning
 from lumped.gear_geometry.geometry import Geometry
 from lumped.mesh.linear import forces_of_laws
 from lumped.mesh.records import Records
-from lumped.path_function import PathFunction
+from lumped.path_function import PathFunction, one_of_each
 from lumped.quasi_static.contacts import contact_of
 from lumped.quasi_static.elements import MeshElements, mean_of_pairs
 from lumped.schema.files import AnyPair, load_gear_pair
@@ -214,9 +214,7 @@ class MeshCycle(DisplayedResult):
         marks = np.union1d(self.edges, self.break_phases * self.period)
         marks = marks[(marks <= 0.0) | (marks >= near)]
         marks = marks[(marks >= self.period) | (marks <= self.period - near)]
-        close = np.flatnonzero(np.diff(marks) < near)
-        fixed = is_edge(marks, self.edges)
-        return np.asarray(np.delete(marks, [j if fixed[j + 1] else j + 1 for j in close]), dtype=np.float64)
+        return one_of_each(marks, near, is_edge(marks, self.edges))
 
     @cached_property
     def _contact(self) -> BoolArray:

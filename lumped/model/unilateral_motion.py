@@ -13,7 +13,7 @@ Sources: docs/theory/teeth.md, "Motion"; docs/theory/validity.md, "Prediction".
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -52,9 +52,11 @@ _OF_TORQUE = 1e-3
 _FADED = 1e-3
 #: A motion belongs to the run that settles if both have the same peak to peak within this share.
 _SAME_SWING = 0.3
-#: Mesh cycles of the first run that settles; each next run has twice as many. Most runs.
+#: Most mesh cycles of the first run that settles; each next run has twice as many. Most such runs.
 _SETTLING = 400
 _RUNS = 5
+#: Most steps of a run that settles, beyond the first run: some seconds.
+_MOST_STEPS = 5_000_000
 #: Mesh cycles of the longest motion that is sought. A run is compared with itself over so many times as many.
 _MOST_CYCLES = 8
 _COMPARED = 8
@@ -203,10 +205,11 @@ class Shooting:
         changed = np.array([self.mismatch(unknowns + change, self.coarse)[0] for change in changes])
         return np.asarray(((changed - unchanged) / _DIFFERENCE / of_mismatch).T, dtype=np.float64)
 
-    def closed(self, unknowns: FloatArray, slopes: FloatArray) -> Closed[Run]:
+    def closed(self, unknowns: FloatArray, slopes: FloatArray, accepted: float = _ACCEPTED) -> Closed[Run]:
         """Close the period by Broyden's method, from unknowns and derivatives that may be rough.
 
         The first steps run with integration steps twice as long, the last ones with those of the motion.
+        ``accepted`` is the largest mismatch of the result.
 
         Raises
         ------
@@ -225,7 +228,7 @@ class Shooting:
         if rough.mismatch > _NEARLY_CLOSED:
             raise NumericalError("No periodic motion that follows the momentary load is near this one.")
         fine = close_period(over(self.fine), rough.unknowns, sizes, rough.derivatives, closed=_CLOSED)
-        if fine.mismatch > _ACCEPTED:
+        if fine.mismatch > accepted:
             raise NumericalError("No periodic motion that follows the momentary load is near this one.")
         return fine
 
@@ -280,23 +283,30 @@ class Shooting:
             return self.closed(start, self.derivatives(start)), 1.0
         return None, 1.0
 
-    def settled(self, unknowns: FloatArray) -> RevolutionMotion:
+    def settled(self, unknowns: FloatArray, radius: float = 1.0) -> RevolutionMotion:
         """Return the stable motion, of at most eight mesh cycles, to which a run settles.
 
         Each run is compared with itself after 1 to 8 cycles. Broyden's method then looks for a stable motion
         close to the run, because settling takes long near a bifurcation.
 
+        Parameters
+        ----------
+        unknowns : start of the first run
+        radius : spectral radius of the linear motion. The smaller it is, the shorter is the first run: the
+            mesh cycle of a slow pair has many steps, and its vibrations fade within the cycle
+
         Raises
         ------
         NumericalError : the run grows, or has not come to such a motion
         """
-        compared = _COMPARED * _MOST_CYCLES
+        first = _first_settling(radius)
+        compared = min(_COMPARED * _MOST_CYCLES, _MOST_CYCLES + first)
         deflection = self.system.deflection
         m = deflection.size
         tables = momentary_tables(self.laws, self.system, 2.0 / steps_of(self.system), _OUTPUTS)
         runs = MomentaryRuns(self.pair, self.system, tables)
-        for turn in range(_RUNS):
-            cycles = (_SETTLING << turn) + compared
+        for settling_cycles in _settling_runs(first, steps_of(self.system) // 2):
+            cycles = settling_cycles + compared
             _, settling = self.run(unknowns, runs, cycles=cycles, recorded=compared)
             if not np.isfinite(settling.end).all():
                 raise NumericalError("The motion with unilateral contact grows without bound.")
@@ -305,11 +315,18 @@ class Shooting:
             sizes, _ = self.scales(unknowns)
             repeated = (np.abs(starts[-2::-1] - starts[-1]) <= _REPEATS * sizes[:-1]).all(axis=1)
             repeats = np.flatnonzero(repeated[:_MOST_CYCLES])[:1] + 1
+            # Where pairs touch within long steps, a slow pair repeats to a part of a millionth and no better.
+            accepted = _REPEATS if repeats.size else _ACCEPTED
             swing = float(np.ptp(settling.states[:, :m] @ deflection))
-            for cycles in repeats if repeats.size else range(1, _MOST_CYCLES + 1):
+            if not repeats.size and radius < _FADED:
+                continue  # settling is fast, so no motion nearby is waiting to be closed
+            most = int(repeats[0]) if repeats.size else _MOST_CYCLES
+            # A motion that repeats after n cycles may repeat after a divisor of n.
+            for cycles in (n for n in range(1, most + 1) if not repeats.size or most % n == 0):
                 with suppress(NumericalError):
-                    of_cycles = replace(self, cycles=int(cycles))
-                    motion = of_cycles.motion(of_cycles.closed(unknowns, of_cycles.derivatives(unknowns)))
+                    of_cycles = replace(self, cycles=cycles)
+                    slopes = of_cycles.derivatives(unknowns)
+                    motion = of_cycles.motion(of_cycles.closed(unknowns, slopes, accepted))
                     swing_of_motion = float(np.ptp(motion.states[:, :m] @ deflection))
                     same = abs(swing_of_motion - swing) <= _SAME_SWING * swing
                     if motion.spectral_radius <= UNSTABLE and same:
@@ -318,6 +335,24 @@ class Shooting:
             f"A run with unilateral contact has not come to a motion of at most {_MOST_CYCLES} mesh cycles: "
             "it beats, is chaotic, or is damped too little. Read its branches over speed: spurcheck response."
         )
+
+
+def _first_settling(radius: float) -> int:
+    """Mesh cycles of the first run that settles, of a pair whose linear motion has a spectral radius."""
+    if not 0.0 < radius < 1.0:
+        return 2 if radius == 0.0 else _SETTLING
+    return min(_SETTLING, math.ceil(math.log(_START_FADED) / math.log(radius)) + 2)
+
+
+def _settling_runs(first: int, steps: int) -> Iterator[int]:
+    """Mesh cycles of each run that settles: twice as many each time, up to the longest one.
+
+    ``steps`` is the number of steps in a mesh cycle.
+    """
+    cycles = first
+    while cycles <= min(_SETTLING << (_RUNS - 1), max(first, _MOST_STEPS // steps)):
+        yield cycles
+        cycles *= 2
 
 
 def outputs_for_one(samples: int) -> int:
@@ -358,11 +393,13 @@ def motion_of_shooting(shooting: Shooting, *, settles: bool = True) -> Revolutio
     ------
     NumericalError : no such motion is found
     """
+    radius_of_linear = 1.0
     try:
         linear = periodic_solution(shooting.system, np.zeros(1), estimate_error=False)
     except NumericalError:  # a multiplier at +1
         start = shooting.at_rest()
     else:
+        radius_of_linear = linear.spectral_radius
         start = shooting.unknowns(linear.states[0], linear.pinion_torque, linear.brake_torque)
         near, radius = shooting.near(start, linear)
         if near is not None:
@@ -371,7 +408,7 @@ def motion_of_shooting(shooting: Shooting, *, settles: bool = True) -> Revolutio
                 return motion
     if not settles:
         raise NumericalError("No periodic motion that follows the momentary load is near the linear one.")
-    return shooting.settled(start)
+    return shooting.settled(start, radius_of_linear)
 
 
 def settled_motion(

@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lumped.errors import NumericalError
+from lumped.errors import NumericalError, refuse
 from lumped.mesh.damper import FULL_DAMPING, damping_law
 from lumped.mesh.records import CONTACT, EXACT, FLANKS, ContactLaw, Records
 from lumped.mesh.statics import Phases, middle_contacts, static_approaches, tips_minus_edges, workspace
@@ -278,8 +278,30 @@ class StaticMesh:
         no_loads = np.empty((0, self.shifts.size))
         approach = static_approaches(phases, force, self.flanks, self.law, no_loads, workspace(phases))
         if not np.isfinite(approach).all():
+            self.refuse_soft_bearings()
             raise NumericalError("At a position no tooth pair carries the load: check stiffness and relief.")
         return np.asarray(approach, dtype=np.float64)
+
+    def refuse_soft_bearings(self) -> None:
+        """Refuse bearings that let the teeth part; called where no contact was found.
+
+        The path of contact is as much shorter as the bearings give way along the line of action. Beyond the
+        length that the pair has above one base pitch, one tooth pair leaves before the next one touches.
+        """
+        g = self.geometry
+        reserve = (g.contact_ratio - 1.0) * g.base_pitch
+        if self.lengthening <= reserve:
+            return
+        bearings = self.pair.bearings
+        name = "pinion" if bearings.pinion.loa_stiffness <= bearings.gear.loa_stiffness else "gear"
+        raise refuse(
+            f"bearings.{name}.loa_stiffness",
+            f"{getattr(bearings, name).loa_stiffness:.3g} N/m",
+            f">= {2.0 * self.force / reserve:.2g} N/m at both gears, with which the teeth stay in mesh",
+            f"Under the mesh force of {self.force:.3g} N the bearings give way by "
+            f"{1e3 * self.lengthening:.3g} mm, and the teeth part. A bare number is in N/m: check the unit, "
+            "as in '200 N/um'.",
+        )
 
     def fit_approach(self, marks: FloatArray, tolerance: float) -> None:
         """Fit the static approach once, because all laws of a pair follow from it. It repeats with every
@@ -416,9 +438,15 @@ def loaded_contact(pair: GearPair) -> LoadedContact:
         lambda xi: mesh.static(xi).compression, mesh.low, mesh.high, jumps, g.base_pitch
     )
     if contact.size == 0 or contact[0, 0] <= mesh.low or contact[-1, 1] >= mesh.high:
+        mesh.refuse_soft_bearings()
+        undercut = [name for name in ("pinion", "gear") if getattr(g, f"undercut_{name}") > 0.0]
+        action = "lower the torque, check the stiffness"
+        if undercut:
+            fields = " and ".join(f"{name}.profile_shift" for name in undercut)
+            action = f"the flanks are undercut, so raise {fields}, or lower the torque"
         raise NumericalError(
             f"Under {pair.operating.pinion_torque:g} N m a tooth pair touches more than {_REACH:g} base "
-            "pitches beyond its tips: lower the torque, check the stiffness."
+            f"pitches beyond its flanks: {action}."
         )
     low = float(contact[0, 0])
     high = float(contact[-1, 1])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lumped.errors import NumericalError
-from lumped.path_function import PathFunction
+from lumped.path_function import PathFunction, one_of_each
 
 
 def test_polynomials_up_to_the_fit_degree_are_exact():
@@ -71,3 +71,41 @@ def test_further_breaks_change_nothing():
     assert set(split.breaks) == {*function.breaks, 0.1, 0.5, 0.51}
     x = np.linspace(0.0, 0.999, 201)
     np.testing.assert_allclose(split(x), function(x), rtol=1e-14)
+
+
+def test_breaks_that_differ_by_rounding_are_one_break():
+    """Two of 58/58's breaks are 2 units in the last place apart: on such a piece a fit has no slope."""
+    at = 0.0229
+    next_to_it = np.nextafter(np.nextafter(at, 1.0), 1.0)
+    fitted = PathFunction.fit(np.sqrt, [0.018, at, next_to_it, 0.027], tolerance=1e-10)
+    middles = 0.5 * (fitted.breaks[:-1] + fitted.breaks[1:])
+    assert at in fitted.breaks
+    assert next_to_it not in fitted.breaks
+    # sqrt is concave: a slope lies between those at the ends, a curvature too.
+    for law, least, most in (
+        (fitted.slope, 0.5 * 0.027**-0.5, 0.5 * 0.018**-0.5),
+        (fitted.slope.slope, -0.25 * 0.018**-1.5, -0.25 * 0.027**-1.5),
+    ):
+        values = law(np.concatenate([fitted.breaks[:-1], middles]))
+        assert least * (1.0 - 1e-4 * np.sign(least)) <= values.min()
+        assert values.max() <= most * (1.0 + 1e-4 * np.sign(most))
+
+
+def test_of_breaks_that_differ_by_rounding_the_switch_stays():
+    at = np.nextafter(1.0, 2.0)
+    step = PathFunction.fit(
+        lambda x: np.where(x < at, -1.0, 2.0),
+        [0.0, 1.0, at, np.nextafter(at, 2.0), 3.0],
+        [at],
+        tolerance=1e-12,
+    )
+    np.testing.assert_array_equal(step.breaks, [0.0, at, 3.0])
+
+
+def test_of_a_chain_of_close_marks_one_mark_stays():
+    """The neighbours of a mark may go before the mark is compared: the chain is one group."""
+    near = 1.0
+    marks = np.array([0.0, 5.0, 5.4, 5.8, 6.2, 9.0, 9.9, 12.0])
+    rank = np.array([1, 0, 0, 0, 1, 0, 0, 1])
+    np.testing.assert_array_equal(one_of_each(marks, near, rank), [0.0, 6.2, 9.0, 12.0])
+    np.testing.assert_array_equal(one_of_each(marks, near, np.zeros(8, bool)), [0.0, 5.0, 9.0, 12.0])

@@ -58,6 +58,10 @@ NAMES_ELSEWHERE = {
     ): "the law without its table: the row of lumped/schema/friction.py",
     ("lumped/friction/table.py", "points"): "rows of lumped/fields/tables.py, tests/lumped/fields",
     (
+        "lumped/quasi_static/loaded.py",
+        "loa_stiffness",
+    ): "where no contact is found: tests/lumped/quasi_static/test_soft_bearings",
+    (
         "lumped/quasi_static/relief_optimum.py",
         "kind",
     ): "a relief that the stiffness has in it: tests/lumped/quasi_static/test_whole_mesh",

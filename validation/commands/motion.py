@@ -272,7 +272,7 @@ def teeth(pair: opt.Pair, files: opt.DataFiles, supports: opt.Supports = None) -
     )
     motions = findings.motion, findings.twin
     swings = [(float(number.attrs["dte_peak_to_peak"]), "m") for number in motions]
-    loads = [(findings.load(number) / findings.static_force, "1") for number in motions]
+    loads = [(findings.tooth_load(number), "1") for number in motions]
     rows: list[tuple[Any, ...]] = [
         ("transmission error, peak to peak", *swings),
         ("largest load on one tooth / mean mesh force", *loads),

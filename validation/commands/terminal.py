@@ -26,6 +26,7 @@ from rich.text import Text
 from typer.core import TyperCommand
 
 from validation.files.formatting import number, quantity
+from validation.files.output import WORKING_FOLDER_DELETED, working_folder_deleted
 
 if TYPE_CHECKING:
     from lumped.typing import Progress
@@ -184,7 +185,7 @@ def guarded(command: Callable[..., None]) -> Callable[..., None]:
     @functools.wraps(command)
     def run(**kwargs: Any) -> None:
         from lumped.display.progress import without_bars
-        from lumped.errors import LawRangeWarning, ParameterError, SpurcheckError
+        from lumped.errors import LawRangeWarning, ParameterError, SpurcheckError, typed_errors
 
         silent = _quiet.set(bool(kwargs.pop("quiet", False)))
         noted_subjects: set[str] = set()
@@ -204,7 +205,8 @@ def guarded(command: Callable[..., None]) -> Callable[..., None]:
                     name: group.make(**{option: kwargs.pop(option) for option in group.options})
                     for name, group in groups.items()
                 }
-                command(**made, **kwargs)
+                with typed_errors():
+                    command(**made, **kwargs)
         except ParameterError as error:
             problems = [
                 replace(p, field=options.get(p.field, p.field), action=_by_options(p.action, options))
@@ -214,6 +216,8 @@ def guarded(command: Callable[..., None]) -> Callable[..., None]:
         except SpurcheckError as error:
             fail(str(error), NUMERICAL)
         except OSError as error:
+            if working_folder_deleted():
+                fail(WORKING_FOLDER_DELETED, REFUSED)
             if error.filename:
                 fail(f"{error.filename}: {error.strerror or type(error).__name__}", REFUSED)
             fail(unprinted(error), NUMERICAL)

@@ -5,6 +5,7 @@ Sources: docs/theory/multibody.md, "The verdict".
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar
@@ -18,7 +19,7 @@ from lumped import GearPair
 from lumped.arguments import real_number, some_of, whole_number
 from lumped.display.progress import reported_to, shows_progress
 from lumped.display.result import DisplayedResult
-from lumped.errors import SpurcheckError, refuse
+from lumped.errors import ParameterError, SpurcheckError, refuse
 from lumped.model.periodic_system import Supports, on_springs
 from lumped.model.steady import UNSTABLE
 from lumped.schema.files import AnyPair, load_gear_pair
@@ -46,6 +47,8 @@ _COMPARED_CYCLES = 4
 #: Samples in a swing of the fastest mode, at least. Half of them tell the error of a quadrature: at six in a
 #: swing Hermite's rule errs by (2 pi/6)^4/720, 0.2 %, and by a 16th of that at twelve.
 _PER_SWING = 12
+#: Most samples in a mesh cycle.
+_MOST_SAMPLES = 65_536
 #: Cycles of the asymmetric variant, and samples in each.
 _VARIANT_CYCLES = 2
 _VARIANT_SAMPLES = 64
@@ -215,7 +218,7 @@ def crosscheck(
     """
     progress = reported_to(progress)
     whole_number("cycles", cycles, 6, 100_000)
-    whole_number("samples_per_cycle", samples_per_cycle, 32, 65536)
+    whole_number("samples_per_cycle", samples_per_cycle, 32, _MOST_SAMPLES)
     limit = real_number("limit", limit, 0.0, 1.0, above=True, action="Give a share: 5 % is 0.05.")
     chosen = some_of("fidelities", fidelities, FIDELITIES)
     if not chosen or len(set(chosen)) != len(chosen):
@@ -266,6 +269,20 @@ def _with_own_teeth(check: CrossCheck, pair: GearPair, samples: int, limit: floa
     )
 
 
+def _too_slow(pair: GearPair, vibrations: float, samples_per_cycle: int) -> ParameterError:
+    """Refusal of a speed at which a mesh cycle lasts too many vibrations of the fastest mode."""
+    rpm = pair.operating.pinion_speed * 30.0 / math.pi
+    most = _MOST_SAMPLES // samples_per_cycle * samples_per_cycle
+    least = rpm * _PER_SWING * vibrations / most
+    return refuse(
+        "operating.pinion_speed",
+        f"{rpm:.4g} rpm",
+        f">= {1.006 * least:.3g} rpm for a cross-check",
+        f"A mesh cycle lasts {vibrations:.0f} vibrations of the fastest mode, and both models follow each of "
+        "them. So slow a pair hardly vibrates: check it at a higher speed, or use static_transmission_error.",
+    )
+
+
 def _compared(
     pair: GearPair,
     cycles: int,
@@ -279,6 +296,8 @@ def _compared(
     numbers = machine(pair)
     every = -int(-_PER_SWING * numbers.vibrations_per_cycle // samples_per_cycle)
     samples = every * samples_per_cycle
+    if samples > _MOST_SAMPLES:
+        raise _too_slow(pair, numbers.vibrations_per_cycle, samples_per_cycle)
     runs = 1 + len(fidelities)
 
     def part(done: int) -> Progress:

@@ -104,9 +104,9 @@ def read_netcdf(path: str | Path) -> xr.Dataset:
         for attributes in [result.attrs, *(variable.attrs for variable in result.variables.values())]:
             "".join(map(str, attributes.values())).encode()  # text that cannot be written is refused here
         return result
-    except (OSError, ValueError, KeyError, RuntimeError, TypeError) as error:
-        if isinstance(error, ParameterError):
-            raise
+    except ParameterError:
+        raise
+    except Exception as error:  # noqa: BLE001  (readers raise anything of a damaged file)
         reason = f"It cannot be read ({shown(str(error))})."
         raise refuse("result", path, _OURS, reason) from None
 

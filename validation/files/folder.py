@@ -8,13 +8,12 @@ from __future__ import annotations
 
 import json
 import os
-import shutil
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from lumped.errors import StorageError, refuse
+from validation.files.abandoned import EARLIER, remove_abandoned, remove_working_folder, working_folder
 from validation.files.output import not_writable
 
 #: Value of "format" in report.json; marks an earlier report.
@@ -30,7 +29,10 @@ def check_target(out: Path, *, force: bool) -> Path:
 
     The folder must be new or empty. With ``force`` the folder may contain an earlier report and nothing else.
     """
-    target = Path(os.path.abspath(out))
+    try:
+        target = Path(os.path.abspath(out))
+    except FileNotFoundError as error:
+        raise not_writable(out, error) from None
     if target.is_symlink():
         raise refuse("output", out, "a folder", "This is a link: name the folder itself.")
     if target.exists() and not target.is_dir():
@@ -49,19 +51,21 @@ def check_target(out: Path, *, force: bool) -> Path:
 def whole_folder(out: Path, *, force: bool) -> Iterator[Path]:
     """Yield an empty folder to write into. At the end the folder is renamed to ``out``.
 
-    After a failure or an interruption no temporary files remain, and earlier results are unchanged.
+    After a failure or an interruption no temporary files remain, and earlier results are unchanged. Folders
+    of killed runs are removed first.
     """
+    remove_abandoned(check_target(out, force=force).parent)
     target = check_target(out, force=force)
     missing = [parent for parent in target.parents if not parent.exists()]
     work: Path | None = None
     try:
         try:
             target.parent.mkdir(parents=True, exist_ok=True)
-            work = Path(tempfile.mkdtemp(prefix=".spurcheck-", dir=target.parent))
+            work = working_folder(target)
         except OSError as error:
             raise not_writable(target, error) from None
         new = work / "new"
-        old = work / "old"
+        old = work / EARLIER
         new.mkdir()
         try:
             yield new
@@ -82,7 +86,7 @@ def whole_folder(out: Path, *, force: bool) -> Iterator[Path]:
             raise StorageError.of(target, error) from error
     finally:
         if work is not None:
-            shutil.rmtree(work, ignore_errors=True)
+            remove_working_folder(work)
         for folder in missing:
             with suppress(OSError):  # a folder that is not empty stays
                 folder.rmdir()

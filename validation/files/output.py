@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 _NO_VARIABLE = "This is a netCDF dimension but not a netCDF variable. %9d"
 #: Longest name of a MATLAB variable.
 _LONGEST_NAME = 63
+#: What to do where the folder in which the program runs was deleted.
+WORKING_FOLDER_DELETED = "The working folder was deleted: change to a folder that exists."
 DATA_SUFFIXES = (".nc", ".csv", ".mat")
 FIGURE_SUFFIXES = (".png", ".svg", ".pdf")
 #: Dimensions that become columns of a CSV file; all others become rows.
@@ -51,8 +53,19 @@ def check_file(path: Path, suffixes: tuple[str, ...], *, force: bool) -> Path:
     return path
 
 
+def working_folder_deleted() -> bool:
+    """Return whether the folder in which the program runs was deleted: then no relative path has a place."""
+    try:
+        os.getcwd()
+    except FileNotFoundError:
+        return True
+    return False
+
+
 def not_writable(path: Path, error: OSError) -> ParameterError:
     """Return the refusal of a file or folder that cannot be written."""
+    if not path.is_absolute() and working_folder_deleted():
+        return refuse("output", path, "a place that exists", WORKING_FOLDER_DELETED)
     reason = error.strerror or type(error).__name__
     action = f"It cannot be written ({reason}): choose another."
     return refuse("output", path, "a place that can be written", action)

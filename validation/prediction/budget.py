@@ -106,7 +106,7 @@ def error_budget(results: BudgetResults) -> xr.Dataset:
     texts = ("transmission error, peak to peak", "largest tooth load", "bearing force, rms")
     columns = zip(
         ("dte", "tooth_force", "bearing_force"),
-        (dte, tooth_load * prediction.static_force, bearing_force),
+        (dte, tooth_load * prediction.mean_force, bearing_force),
         ("m", "N", "N"),
         texts,
         strict=True,

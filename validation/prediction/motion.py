@@ -21,7 +21,7 @@ import xarray as xr
 
 from lumped.display.progress import shows_progress
 from lumped.display.result import DisplayedResult
-from lumped.errors import NumericalError
+from lumped.errors import NumericalError, typed_errors
 from lumped.model.periodic_system import Supports, with_supports
 from lumped.model.results import PlainMotion, peak_to_peak, plain
 from lumped.model.revolution_motion import Origin
@@ -128,13 +128,22 @@ class Prediction(DisplayedResult):
 
     @property
     def static_force(self) -> float:
-        """Mean mesh force, T_p / r_bp [N]."""
+        """Static mesh force without friction, T_p / r_bp [N]."""
         return self.pair.operating.pinion_torque / self.pair.geometry.base_radius_pinion
 
     @cached_property
     def mesh_force(self) -> FloatArray:
         """Total normal load of all tooth pairs at the times of ``cycle`` [N]."""
         return np.asarray(self.plain.values["normal_load"].sum(axis=0), dtype=np.float64)
+
+    @cached_property
+    def mean_force(self) -> float:
+        """Mean mesh force: mean of ``mesh_force`` over the period [N].
+
+        The moments on the pinion have no mean over a period, so the mean mesh force is the static one less
+        what friction carries: r_bp <N> = T_p - <sum F_n xi_n>.
+        """
+        return float(self.mesh_force.mean())
 
     @property
     def input_power(self) -> float:
@@ -153,13 +162,13 @@ class Prediction(DisplayedResult):
 
     @property
     def dynamic_factor(self) -> float:
-        """Largest mesh force over the static mesh force [-]."""
-        return float(self.mesh_force.max()) / self.static_force
+        """Largest mesh force over the mean mesh force; 1: the mesh force is constant [-]."""
+        return float(self.mesh_force.max()) / self.mean_force
 
     @property
     def least_force(self) -> float:
-        """Smallest mesh force over the static mesh force; 0: contact is lost [-]."""
-        return max(float(self.mesh_force.min()) / self.static_force, 0.0)
+        """Smallest mesh force over the mean mesh force; 0: contact is lost [-]."""
+        return max(float(self.mesh_force.min()) / self.mean_force, 0.0)
 
     @property
     def contact_lost(self) -> bool:
@@ -168,8 +177,8 @@ class Prediction(DisplayedResult):
 
     @property
     def tooth_load(self) -> float:
-        """Largest load of one tooth pair over the static mesh force [-]."""
-        return float(self.plain.values["normal_load"].max()) / self.static_force
+        """Largest load of one tooth pair over the mean mesh force [-]."""
+        return float(self.plain.values["normal_load"].max()) / self.mean_force
 
     @cached_property
     def bearing_orders(self) -> FloatArray:
@@ -245,9 +254,9 @@ PLACES = {
 #: Result -> SI unit and plain name.
 QUANTITIES = {
     "dte_peak_to_peak": ("m", "transmission error, peak to peak"),
-    "dynamic_factor": ("1", "largest mesh force over the static one"),
-    "tooth_load": ("1", "largest load of a tooth over the static mesh force"),
-    "least_force": ("1", "smallest mesh force over the static one"),
+    "dynamic_factor": ("1", "largest mesh force over the mean one"),
+    "tooth_load": ("1", "largest load of a tooth over the mean mesh force"),
+    "least_force": ("1", "smallest mesh force over the mean one"),
     "bearing_rms": ("N", "force on the pinion bearings, rms about its mean"),
     "efficiency": ("1", "mesh efficiency"),
 }
@@ -290,7 +299,7 @@ def predict(
 
 
 def dynamic_factor(pair: AnyPair, *, supports: Supports | None = None) -> float:
-    """Return the dynamic factor of ``predict``: largest mesh force over the static mesh force [-].
+    """Return the dynamic factor of ``predict``: largest mesh force over the mean mesh force [-].
 
     Arguments (``pair``, ``supports``) and errors as for ``predict``.
     """
@@ -304,7 +313,8 @@ def predicted(pair: GearPair, samples_of_like_teeth: int = _SAMPLES) -> Predicti
     """
     samples = samples_of_like_teeth if pair.healthy is pair else None
     try:
-        motion = periodic_motion(pair, "unilateral", samples_per_cycle=samples)
+        with typed_errors():
+            motion = periodic_motion(pair, "unilateral", samples_per_cycle=samples)
     except NumericalError as error:
         return _stand_in(pair, samples, error)
     settled = pair.healthy is pair and motion.attributes.get("origin") == Origin.SETTLED.value

@@ -89,8 +89,8 @@ class Number:
 #: Number of the prediction -> label on page 1.
 _LABELS = {
     "dte_peak_to_peak": "Transmission error, peak to peak",
-    "dynamic_factor": "Dynamic factor: largest mesh force / static",
-    "tooth_load": "Largest load on one tooth / static mesh force",
+    "dynamic_factor": "Dynamic factor: largest mesh force / mean",
+    "tooth_load": "Largest load on one tooth / mean mesh force",
     "bearing_rms": "Dynamic force on the pinion bearings, rms",
     "efficiency": "Mesh efficiency",
 }
@@ -122,7 +122,7 @@ def _least_force_row(results: Results, fact: Fact) -> Number:
         second_force = second.least_force
     return Number(
         "least_force",
-        "Smallest mesh force / static",
+        "Smallest mesh force / mean",
         results.prediction.least_force,
         "1",
         second=second_force,

@@ -174,10 +174,10 @@ class Results:
 
     @cached_property
     def check(self) -> CrossCheck | Absent:
-        """Cross-check of both programs on springs. Absent: the second program refuses the speed."""
+        """Cross-check of both programs on springs. Absent: the second program refuses the speed, or fails."""
         try:
             return crosscheck(self.pair_on_springs, cycles=6, progress=self.stage("second program"))
-        except ParameterError as error:
+        except (NumericalError, ParameterError) as error:
             return Absent(Outcome.FAILED, str(error))
 
     @cached_property

@@ -185,7 +185,7 @@ def _danger(results: Results, facts: Mapping[str, Fact]) -> _Danger | None:
 
 
 def _rises(prediction: Prediction) -> str:
-    return f"The mesh force falls to zero and rises to {prediction.dynamic_factor:.2g} times the static one."
+    return f"The mesh force falls to zero and rises to {prediction.dynamic_factor:.2g} times its mean."
 
 
 def _like_teeth(results: Results) -> str:

@@ -64,14 +64,15 @@ class TeethFindings:
         return int(self.motion.attrs["period_cycles"])
 
     @property
-    def static_force(self) -> float:
-        """Mean mesh force [N]."""
-        return self.pair.operating.pinion_torque / self.pair.geometry.base_radius_pinion
+    def mean_force(self) -> float:
+        """Mean mesh force of the motion of the pair [N]."""
+        return float(self.motion["normal_load"].sum("pair").mean())
 
     @staticmethod
-    def load(result: xr.Dataset) -> float:
-        """Largest load of one tooth pair [N]."""
-        return float(result["normal_load"].max())
+    def tooth_load(result: xr.Dataset) -> float:
+        """Largest load of one tooth pair of a motion over the mean mesh force of this motion [-]."""
+        load = result["normal_load"]
+        return float(load.max() / load.sum("pair").mean())
 
     @cached_property
     def contact_lost(self) -> tuple[tuple[int, int], ...]:

@@ -10,6 +10,7 @@ from lumped import NumericalError, ParameterError
 from lumped.model.equations import structure
 from lumped.model.mesh_cycle import MeshCycle
 from tests.unlike_pairs import UNLIKE, unlike_pair
+from validation.exchange.new_pair_file import new_pair
 
 
 @pytest.fixture(scope="module")
@@ -47,6 +48,25 @@ def test_where_contact_holds_it_is_the_linear_motion(name, brake):
     assert orbit.spectral_radius == pytest.approx(np.abs(multipliers).max(), abs=1e-9)
     torque = linear.attrs["brake_torque" if brake == "balanced" else "pinion_torque"]
     assert orbit.orbit.parameter == pytest.approx(torque, rel=1e-10)
+
+
+def test_a_motion_changes_little_with_the_torque():
+    """58/58 at 120 N m: a piece of a law as short as rounding once let a contact change its state for ever.
+
+    Between torques 1 % apart nothing happens, so the largest multiplier and the motion lie between those of
+    the neighbours.
+    """
+    pair = new_pair((58, 58), 2.3, 13.5, 910, 120)
+    below, orbit, above = (
+        floquet.periodic_orbit(pair.with_(operating__pinion_torque=torque))
+        for torque in (119.0, 120.0, 121.0)
+    )
+    assert orbit.contact_lost
+    assert orbit.stable
+    middle = 0.5 * (below.spectral_radius + above.spectral_radius)
+    assert orbit.spectral_radius == pytest.approx(middle, abs=1e-5)
+    assert orbit.dte_rms == pytest.approx(0.5 * (below.dte_rms + above.dte_rms), rel=1e-4)
+    assert floquet.long_run(pair).kind == "periodic"
 
 
 def test_without_clearance_motions_are_proportional_to_the_torque(frictionless):

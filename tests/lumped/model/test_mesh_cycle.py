@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from lumped import geometry, mesh_cycle
+from validation.exchange.new_pair_file import new_pair
 
 
 @pytest.fixture(scope="module")
@@ -48,6 +49,19 @@ def test_ends_of_a_segment_are_its_one_sided_limits(cycle):
             travel = g.base_radius_pinion * g.omega_pinion * nudge
             change = np.where(near.contact, np.abs(law.slope(near.position)) * travel, 0.0)
             assert (np.abs(a - b) <= 1.1 * change + 1e-9 * np.abs(a).max()).all(), name
+
+
+@pytest.mark.parametrize("teeth", [(58, 58), (19, 41), (23, 23)])
+def test_no_two_breaks_differ_by_rounding(teeth):
+    """Both gears alike: many breaks of a law have a mirror image, whose phase is that of the break."""
+    pair = new_pair(teeth, 2.3, 13.5, 910, 120)
+    cycle = mesh_cycle(pair)
+    assert np.diff(cycle.breaks).min() > 1e-13 * cycle.period
+    assert np.isin(cycle.edges, cycle.breaks).all()
+    for name in ("stiffness", "damping", "friction", "error"):
+        law = getattr(cycle.elements, name)
+        low, high = law.interval
+        assert np.diff(law.breaks).min() > 1e-13 * (high - low), name
 
 
 class TestManyCycles:

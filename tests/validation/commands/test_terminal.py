@@ -46,6 +46,19 @@ def test_cells_of_a_table_have_digits_and_units(capsys):
     ]  # fmt: skip
 
 
+@pytest.mark.parametrize("columns", ["0", "1", "-3"])
+def test_a_terminal_without_columns_hides_nothing(columns):
+    """Some terminals and job schedulers set COLUMNS=0: every table was empty, and the exit code 0."""
+
+    def printed(**variables):
+        environment = {name: value for name, value in os.environ.items() if name != "COLUMNS"} | variables
+        command = [sys.executable, "-m", "spurcheck", "presets"]
+        return subprocess.run(command, env=environment, capture_output=True, text=True, check=True).stdout
+
+    assert printed(COLUMNS=columns) == printed()
+    assert "nasa_28_28" in printed()
+
+
 @pytest.mark.parametrize("text", TEXTS)
 def test_a_note_and_an_error_show_text_as_it_is_written(text, capsys):
     note(text)

@@ -1,6 +1,8 @@
 """Does the cross-check tell agreement from disagreement, and sound pairs from what symmetry hides?"""
 
 import dataclasses
+import math
+import re
 
 import numpy as np
 import pytest
@@ -9,6 +11,7 @@ import lumped
 import multibody
 from lumped import ParameterError, bodies
 from lumped.model import periodic_system
+from multibody.contact.machine import machine
 from validation.cross_check import comparison
 from validation.cross_check.agreement import QUANTITIES, off_switch_samples
 from validation.cross_check.comparison import crosscheck
@@ -48,6 +51,22 @@ def test_the_difference_is_that_of_the_motions_over_the_peak_to_peak(check):
     keep = off_switch_samples(check.pair, reference["time"].to_numpy(), 0.02)
     a, b = (motion["normal_load"].to_numpy().sum(axis=0)[keep] for motion in (other, reference))
     assert agreements["normal_load"].difference == pytest.approx(np.abs(a - b).max() / np.ptp(b), rel=1e-12)
+
+
+@pytest.mark.parametrize(("teeth", "module", "rpm"), [((19, 41), 2.5, 0.5), ((60, 23), 0.4, 12.0)])
+def test_a_speed_that_is_too_slow_is_refused_by_its_name(teeth, module, rpm):
+    """The number of samples follows from the speed: a refusal of samples names what nobody gave."""
+    slow = new_pair(teeth, module, 8 * module, rpm, 3.0 * module**3)
+    with pytest.raises(ParameterError) as caught:
+        crosscheck(slow, variant=False)
+    (problem,) = caught.value.problems
+    assert (problem.field, problem.value) == ("operating.pinion_speed", f"{rpm:g} rpm")
+    least = float(re.search(r">= (\S+) rpm", problem.allowed)[1])
+    # Vibrations in a mesh cycle are in inverse proportion to the speed.
+    for speed, refused in ((0.98 * least, True), (least, False)):
+        vibrations = machine(slow).vibrations_per_cycle * rpm / speed
+        samples = 256 * math.ceil(comparison._PER_SWING * vibrations / 256)
+        assert (samples > comparison._MOST_SAMPLES) == refused
 
 
 def test_an_exact_model_without_a_periodic_motion_of_its_own_is_run_and_not_judged(pair, monkeypatch):

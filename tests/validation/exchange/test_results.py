@@ -76,6 +76,10 @@ UNREADABLE = {
     "a virtual dataset": _virtual,
     "gigabytes in a kilobyte": lambda f: f.create_dataset("a", (4 * 10**8,), "f8", chunks=(10**6,)),
     "terabytes as coordinate": lambda f: f.create_dataset("a", (10**12,), "f8", chunks=(10**6,)).make_scale(),
+    "an array as coordinates": lambda f: (
+        f.create_dataset("a", data=np.zeros(3)).attrs.create("coordinates", np.arange(3.0)),
+        f.attrs.create("coordinates", np.arange(3.0)),
+    ),
     "text in no encoding": lambda f: f.attrs.create("a", b"\xff", dtype=h5py.string_dtype()),
     "terabytes in a small file": lambda f: f.create_dataset("a", shape=(10**12,), dtype="f8", chunks=(1000,)),
     "records": lambda f: f.create_dataset("a", data=np.zeros(3, dtype=[("x", "f8"), ("y", "i4")])),

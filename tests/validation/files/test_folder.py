@@ -123,6 +123,97 @@ def test_a_file_and_a_place_below_a_file_are_refused(tmp_path):
         raise AssertionError("no folder should be given")
 
 
+KILLED = """
+import sys, time
+from pathlib import Path
+from validation.files.folder import whole_folder
+
+out, between = Path(sys.argv[1]), sys.argv[2] == "between"
+if between:  # the two steps of the replacement
+    rename = Path.rename
+    def move(source, target):
+        if source.name == "new":
+            print("ready", flush=True)
+            time.sleep(60)
+        return rename(source, target)
+    Path.rename = move
+with whole_folder(out, force=True) as folder:
+    (folder / "page").write_text("half")
+    if not between:
+        print("ready", flush=True)
+        time.sleep(60)
+"""
+
+
+@pytest.fixture
+def running(tmp_path):
+    """Start a run that writes into tmp_path/out, and waits; ``between``: between both steps of replacing."""
+    runs = []
+
+    def start(how="within"):
+        run = subprocess.Popen(
+            [sys.executable, "-c", KILLED, str(tmp_path / "out"), how], stdout=subprocess.PIPE, text=True
+        )
+        runs.append(run)
+        assert run.stdout.readline() == "ready\n"
+        return run
+
+    yield start
+    for run in runs:
+        run.kill()
+        run.wait()
+        run.stdout.close()
+
+
+@pytest.mark.skipif(os.name != "posix", reason="locks of POSIX systems")
+class TestAKilledRun:
+    def test_its_folder_is_removed_by_the_next_run(self, tmp_path, running):
+        run = running()
+        run.kill()
+        run.wait()
+        assert [name[:11] for name in names(tmp_path)] == [".spurcheck-"]
+        write(tmp_path / "other", {"page": "new"})
+        assert names(tmp_path) == ["other"]
+
+    def test_the_folder_of_a_run_that_goes_on_stays(self, tmp_path, running):
+        running()
+        before = names(tmp_path)
+        write(tmp_path / "other", {"page": "new"})
+        assert names(tmp_path) == sorted([*before, "other"])
+
+    def test_earlier_results_come_back(self, tmp_path, running):
+        write(tmp_path / "out", {"page": "earlier"})
+        run = running("between")
+        assert not (tmp_path / "out").exists()
+        run.kill()
+        run.wait()
+        with pytest.raises(ParameterError, match="not empty"):
+            write(tmp_path / "out", {"page": "new"}, force=False)
+        assert tree(tmp_path / "out")["page"] == "earlier"
+        assert names(tmp_path) == ["out"]
+
+    def test_a_folder_that_is_not_ours_stays(self, tmp_path):
+        (tmp_path / ".spurcheck-mine").mkdir()
+        (tmp_path / ".spurcheck-mine" / "notes").write_text("of the user")
+        write(tmp_path / "out", {"page": "new"})
+        assert names(tmp_path) == [".spurcheck-mine", "out"]
+
+
+@pytest.mark.skipif(os.name != "posix", reason="other systems keep a folder in use")
+@pytest.mark.parametrize(
+    "command", [["report", "-o", "r"], ["simulate", "nasa_28_28", "-o", "x.nc"], ["init"]]
+)
+def test_a_deleted_working_folder_is_named(tmp_path, command):
+    here = tmp_path / "gone"
+    here.mkdir()
+    code = f"import os; os.chdir({str(here)!r}); os.rmdir({str(here)!r})"
+    code += "; from validation.cli import main; main()"
+    done = subprocess.run([sys.executable, "-c", code, *command], capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert "The working folder was deleted" in done.stderr
+    assert "cannot be printed" not in done.stderr
+
+
 def test_a_link_to_a_folder_is_not_followed(tmp_path):
     (tmp_path / "link").symlink_to(tmp_path, target_is_directory=True)
     with pytest.raises(ParameterError, match="This is a link"):

@@ -169,3 +169,41 @@ def test_the_motion_of_a_slow_fast_light_or_undamped_pair_is_named(name, changes
     assert bool(prediction.reason) == (motion is Motion.LINEAR)
     assert prediction.stable
     assert prediction.cycle.attrs["contact"] == ("linear" if motion is Motion.LINEAR else "unilateral")
+
+
+def slow_and_rough() -> lumped.GearPair:
+    """A pair that hardly vibrates. By its shifts most of the contact lies behind the pitch point, where the
+    friction on the pinion carries a part of the torque.
+    """
+    changes = {
+        "pinion.profile_shift": 0.59,
+        "gear.profile_shift": -0.28,
+        "friction.law": "coulomb",
+        "friction.coefficient": 0.1,
+    }
+    return new_pair((58, 227), 2.87, 11.6, 38.8, 515, changes)
+
+
+@pytest.mark.parametrize("name", [*UNLIKE, "slow and rough", "brake torque given"])
+def test_the_mean_mesh_force_is_the_torque_less_what_friction_carries(name):
+    """Balance of the moments on the pinion over a period: T_p = r_bp <N> + <sum F xi>."""
+    if name == "brake torque given":
+        pair = unlike_pair("larger_gear_drives_contact_lost").with_({"operating.brake_torque": 27.8})
+    else:
+        pair = slow_and_rough() if name == "slow and rough" else unlike_pair(name)
+    prediction = predicted(pair)
+    cycle = prediction.cycle
+    carried = (cycle["friction_force"] * cycle["position"]).sum("pair").to_numpy().mean()
+    torque = cycle.attrs["pinion_torque"]
+    base_radius = pair.geometry.base_radius_pinion
+    # Friction jumps between two samples: a mean of samples errs by a jump over their number.
+    assert base_radius * prediction.mean_force == pytest.approx(torque - carried, rel=3e-4)
+    assert abs(carried) > 1e-3 * torque
+    assert prediction.least_force <= 1.0 <= prediction.dynamic_factor
+
+
+def test_the_largest_force_of_a_slow_pair_is_below_the_torque_over_the_base_radius():
+    """Why the dynamic factor is over the mean force of the motion, and not over T_p / r_bp."""
+    prediction = predicted(slow_and_rough())
+    assert prediction.mesh_force.max() < 0.997 * prediction.static_force
+    assert prediction.dynamic_factor > 1.0

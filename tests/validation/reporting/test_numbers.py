@@ -70,8 +70,8 @@ def assert_rows(written, name, expected):
 def of_motion(written, name):
     """The five numbers of a saved motion, but for the efficiency."""
     cycle = written.data(name)
-    force = recomputed.static_force(written.parameters)
     total = cycle["normal_load"].sum("pair").to_numpy()
+    force = total.mean()
     x, y = (cycle[f"bearing_force_{line}_p"].to_numpy() for line in "xy")
     return {
         "dte_peak_to_peak": np.ptp(cycle["dte"].to_numpy()),
@@ -264,6 +264,7 @@ def test_the_table_of_forces(written):
     pressure = np.sqrt(np.maximum(load, 0.0) * modulus / (2.0 * math.pi * width * radius)).max()
     expected = {
         "static mesh force": (recomputed.static_force(parameters), "N"),
+        "mean mesh force": (total.mean(), "N", "static less what friction carries"),
         "largest mesh force": (total.max(), "N"),
         "smallest mesh force": (max(total.min(), 0.0), "N", "0 is contact loss"),
         "largest load of one tooth pair": (load.max(), "N"),
@@ -282,7 +283,7 @@ def test_the_table_of_forces(written):
             for axis, line in (("x", "along the line of action"), ("y", "off it"))
         },
     )
-    for one in written.table("forces")[5:]:
+    for one in written.table("forces")[6:]:
         _, gear, line, _ = one["name"].split(", ")
         force = cycle[f"bearing_force_{'x' if line.startswith('along') else 'y'}_{gear[0]}"].to_numpy()
         recomputed.assert_says(one["note"].replace("\u00a0", " "), r"rms about it (.*)", (force.std(), "N"))
@@ -409,7 +410,7 @@ def test_the_error_budget(written):
     assert rows["numerics"] == pytest.approx(estimate * span, rel=1e-9)
     assert [one["error"] for one in table] == [_ERRORS[key] for key in rows]
     assert "; ".join(one["note"] for one in table) == budget.attrs["notes"]
-    force = recomputed.static_force(written.parameters)
+    force = written.data("prediction")["normal_load"].sum("pair").mean().item()
     second = of_motion(written, "second_program")
     first = of_motion(written, "prediction")
     row = list(rows).index("second")

@@ -112,6 +112,13 @@ class TestRelations:
         monkeypatch.setattr(type(prediction), "numbers", property(lambda self: numbers))
         assert any(word in text for text in broken_relations(results))
 
+    def test_a_force_that_the_torque_does_not_bear_is_seen(self, results, monkeypatch):
+        """A mesh force that is 1 % too large breaks the balance of the moments on the pinion."""
+        prediction = results.prediction
+        assert not any("do not balance" in text for text in broken_relations(known("calm")))
+        monkeypatch.setitem(vars(prediction), "mean_force", 1.01 * prediction.mean_force)
+        assert any("do not balance" in text for text in broken_relations(results))
+
     def test_a_broken_relation_is_a_failed_check_and_the_verdict(self, results, tmp_path, monkeypatch):
         monkeypatch.setattr("validation.reporting.relations._SAME", -1.0)
         made = write_report("calm", tmp_path / "r", drawn=False, results=results).result

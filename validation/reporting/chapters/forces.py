@@ -35,9 +35,9 @@ def write(results: Results) -> Content:
         drawn, results, {name: (drawn[name].to_numpy(), "N", words) for name, words in _BEARINGS.items()}
     )
     result = (
-        f"The largest mesh force is {number(prediction.dynamic_factor, 3)} times the static "
-        f"{quantity(prediction.static_force, 'N', 3)}; one tooth pair carries at most "
-        f"{number(prediction.tooth_load, 3)} times the static force."
+        f"The largest mesh force is {number(prediction.dynamic_factor, 3)} times the mean "
+        f"{quantity(prediction.mean_force, 'N', 3)}; one tooth pair carries at most "
+        f"{number(prediction.tooth_load, 3)} times the mean force."
     )
     forces = tooth_forces(results)
     pairs = [name for name in map(str, forces.data_vars) if name.startswith("load_")]
@@ -73,6 +73,7 @@ def _forces_table(results: Results) -> Table:
     largest_load = float(cycle["normal_load"].max())
     numbers = [
         NamedNumber("static mesh force", prediction.static_force, "N", "torque over base radius"),
+        NamedNumber("mean mesh force", prediction.mean_force, "N", "static less what friction carries"),
         NamedNumber("largest mesh force", float(prediction.mesh_force.max()), "N"),
         NamedNumber(
             "smallest mesh force", max(float(prediction.mesh_force.min()), 0.0), "N", "0 is contact loss"

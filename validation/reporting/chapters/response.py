@@ -89,14 +89,14 @@ def _motion_table(results: Results) -> Table:
         tolerances += ", without mesh.stiffness_factor"
     iso_note = f"{iso.zone}, N = {iso.resonance_ratio:.2f}, {tolerances}"
     mean = float(prediction.cycle["dte"].mean())
-    over_static = "largest mesh force over the static one"
+    over_mean = "largest mesh force over the mean one"
     return named_numbers(
         "motion",
         "The motion at the operating point.",
         (
             NamedNumber("transmission error, peak to peak", prediction.peak_to_peak, "m"),
             NamedNumber("transmission error, mean", mean, "m"),
-            NamedNumber("dynamic factor", prediction.dynamic_factor, "1", over_static),
+            NamedNumber("dynamic factor", prediction.dynamic_factor, "1", over_mean),
             NamedNumber("K_v of ISO 6336-1, method B", iso.factor, "1", iso_note),
             NamedNumber("mesh frequency", geometry.mesh_frequency, "Hz"),
         ),

@@ -90,8 +90,8 @@ def _numbers_table(findings: TeethFindings) -> Table:
     """Numbers of the teeth as given; the note of each has the number of like teeth."""
     swing = findings.motion.attrs["dte_peak_to_peak"]
     twin_swing = findings.twin.attrs["dte_peak_to_peak"]
-    load = findings.load(findings.motion) / findings.static_force
-    twin_load = findings.load(findings.twin) / findings.static_force
+    load = findings.tooth_load(findings.motion)
+    twin_load = findings.tooth_load(findings.twin)
     rate, twin_rate = findings.rates
     lost = float(len(findings.contact_lost))
     return named_numbers(
@@ -186,7 +186,7 @@ def _loads(findings: TeethFindings) -> list[Picture]:
     One gear is drawn where the motion repeats after a turn of the pinion or of the gear.
     """
     pair = findings.pair
-    share = findings.largest_loads / findings.static_force
+    share = findings.largest_loads / findings.mean_force
     words = "largest load over the mean mesh force"
     teeth = {gear: np.arange(getattr(pair, gear).teeth) + 1 for gear in GEARS}
     if findings.period not in (pair.pinion.teeth, pair.gear.teeth):
@@ -202,7 +202,7 @@ def _loads(findings: TeethFindings) -> list[Picture]:
         data = labelled_dataset(
             {"share": ("tooth", np.nanmax(share, axis=1 - axis), "1", words)},
             {"tooth": (teeth[gear], "1", f"tooth of the {gear}")},
-            {"shaft": gear, "healthy": findings.load(findings.twin) / findings.static_force},
+            {"shaft": gear, "healthy": findings.tooth_load(findings.twin)},
         )
         caption = f"Largest load of each tooth of the {gear} over the mean mesh force."
         pictures.append(Picture(f"teeth_loads_{gear}", caption, data, loads_figure))
