@@ -1,6 +1,8 @@
 """Do the site's own extensions write what they should? The build itself treats warnings as errors."""
 
+import os
 import re
+import subprocess
 import sys
 from pathlib import Path
 
@@ -21,7 +23,7 @@ from extensions.scripts import pieces
 from sphinx.errors import ExtensionError
 
 from tests.evidence.faults.fault import FAULTS
-from tests.evidence.faults.judging import Outcome
+from tests.evidence.faults.outcome import Outcome
 from tests.evidence.faults.table import row
 
 
@@ -29,6 +31,23 @@ def test_a_failing_check_stops_the_build():
     must_pass("order", True)
     with pytest.raises(CheckFailed, match="order"):
         must_pass("order", False)
+
+
+def test_the_pages_are_computed_without_the_test_extra(root):
+    """`make docs` of a fresh clone installs the docs extra alone."""
+    code = """
+import sys
+for name in ("pytest", "hypothesis", "xdist", "selenium", "flint", "fmpy"):
+    sys.modules[name] = None  # an import raises ModuleNotFoundError
+import computed
+computed.writers()
+"""
+    paths = os.pathsep.join((str(root), str(root / "docs")))
+    environment = os.environ | {"PYTHONPATH": paths}
+    done = subprocess.run(
+        [sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
 
 
 def test_table_cells_are_not_markup():
