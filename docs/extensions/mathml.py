@@ -12,6 +12,9 @@ from sphinx.application import Sphinx
 from sphinx.errors import ExtensionError
 from sphinx.writers.html5 import HTML5Translator
 
+_RELATION = re.compile(r"[()\[\]{}]|(?P<relation>=|<|>|\\(?:le|ge|approx|ne|in|propto)\b)")
+#: Characters of LaTeX that stand in one line.
+_SHORT = 20
 _TAG = re.compile(r"\\tag\{([^}]*)\}")
 #: A dotted or barred symbol with an index, which docutils takes for limits below and above an operator.
 _ACCENTED = re.compile(
@@ -61,8 +64,21 @@ def _argument(text: str) -> tuple[str, str]:
 
 
 def _inline(self: HTML5Translator, node: nodes.math) -> None:
-    self.body.append(mathml(node.astext(), block=False))
+    # Browsers do not break a line inside an equation: a long one is several, and a line may end between.
+    self.body.append("<wbr>".join(mathml(part, block=False) for part in _lines(node.astext())))
     raise nodes.SkipNode
+
+
+def _lines(latex: str) -> list[str]:
+    """Split a long equation before its relations; brackets stay together."""
+    depth, start, result = 0, 0, []
+    for token in _RELATION.finditer(latex):
+        depth += token[0] in {"(", "[", "{"}
+        depth -= token[0] in {")", "]", "}"}
+        if token["relation"] and depth == 0 and token.start() - start > _SHORT:
+            result.append(latex[start : token.start()])
+            start = token.start()
+    return [*result, latex[start:]]
 
 
 def _block(self: HTML5Translator, node: nodes.math_block) -> None:
