@@ -1,8 +1,8 @@
 """Symbols and formulas that stand as plain text in a sentence become equations: ``Ω_p r_bp t`` is typeset.
 
-The sources stay readable as plain text. Code and equations are left alone. A formula is a sequence of symbols,
-numbers and operators that holds a sign of mathematics: a Greek letter, an index, a prime, a relation. A single
-letter counts on the pages of ``MATHEMATICAL`` alone, where it is a symbol.
+The sources stay readable as plain text. Code and equations are left alone. A formula is a sequence of
+symbols, numbers and operators with a sign of mathematics: a Greek letter, an index, a prime, a relation. A
+single letter counts on the pages of ``MATHEMATICAL`` alone, where it is a symbol.
 """
 
 from __future__ import annotations
@@ -255,7 +255,8 @@ def _is_name(letter: str, before: str, behind: str) -> bool:
     if letter == "a":
         return not _BEFORE_SMALL_A.search(before) and not re.match(r"[,.;:)/]", behind)
     if letter == "A":
-        return bool(follows_name) or not _BEFORE_A.search(before)
+        points = re.match(r" (?:and|to|or) [B-Z]\b", behind)
+        return bool(follows_name) or not (points or _BEFORE_A.search(before))
     return letter in _ROMAN or bool(follows_name)
 
 
@@ -412,7 +413,7 @@ def _latex(formula: list[Piece]) -> str:
         piece = formula[position]
         if piece.latex != "√":
             summed = piece.text == "Σ" and position + 1 < len(formula)
-            out += r"\sum " if summed else piece.latex
+            out += r"\sum " if summed else r"\," if _is_gap(formula, position) else piece.latex
             position += 1
             continue
         end = position + 1
@@ -428,6 +429,14 @@ def _latex(formula: list[Piece]) -> str:
         out += rf"\sqrt{{{_latex(argument)}}}"
         position = end
     return out.strip()
+
+
+def _is_gap(formula: list[Piece], position: int) -> bool:
+    """Tell whether a piece is a blank between two factors."""
+    if formula[position].kind is not Kind.SPACE:
+        return False
+    sides = (formula[position - 1].kind, formula[position + 1].kind)
+    return not {Kind.OPERATOR, Kind.COMMA, Kind.FUNCTION} & set(sides) and formula[position - 1].text != "Σ"
 
 
 _NOT_TEXT = (

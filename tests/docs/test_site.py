@@ -91,19 +91,19 @@ def marked(text, **options):
 
 
 @pytest.mark.parametrize(("text", "latex"), [
-    ("Ω_p r_bp", r"\Omega_{p} r_{bp}"),
-    ("4 M^k x", "M^{k} x"),
+    ("Ω_p r_bp", r"\Omega_{p}\,r_{bp}"),
+    ("4 M^k x", r"M^{k}\,x"),
     ("V_s^b6", "V_{s}^{b6}"),
     ("r_bg/r_bp", "r_{bg}/r_{bp}"),
     ("r_{k+1}", "r_{k+1}"),
     ("θ̇_p", r"\dot{\theta}_{p}"),
     ("2w_i/k", "2w_{i}/k"),
-    ("e^{−ct} y", "e^{-ct} y"),
+    ("e^{−ct} y", r"e^{-ct}\,y"),
     ("r_b²(r_i⁻² − r_f⁻²)", "r_{b}^{2}(r_{i}^{-2} - r_{f}^{-2})"),
     ("√(r_a² − r_b²)", r"\sqrt{r_{a}^{2} - r_{b}^{2}}"),
     ("ΣF_iv_s,i", r"\sum F_{i}v_{s,i}"),
     ("x″ᵀMy = x′ᵀGy", r"x^{\prime\prime T}My = x^{\prime T}Gy"),
-    ("(I − M)⁻¹ p = |E|_F", "(I - M)^{-1} p = |E|_{F}"),
+    ("(I − M)⁻¹ p = |E|_F", r"(I - M)^{-1}\,p = |E|_{F}"),
     ("d_ij ≠ 2 cos θ", r"d_{ij} \ne 2 \cos \theta"),
 ])  # fmt: skip
 def test_latex_of_formulas_in_text(text, latex):
