@@ -2,9 +2,9 @@
 
     python .ci/licences.py [EXTRA ...]
 
-Licences are those that each distribution states in its metadata: the licence expression, else the classifiers,
-else the first line of the field Licence. A distribution that states none is printed with "not stated", and the
-exit code is 1.
+Licences are those that the metadata of a distribution state: the licence expression, else the classifiers,
+else the first line of the field Licence. A distribution that states none is printed with "not stated", and
+the exit code is 1.
 """
 
 import importlib.metadata as metadata

@@ -41,10 +41,12 @@ def _agreement_words(results: Results) -> str:
     lumped, second_program = (
         quantity(swing, worst.unit, 3) for swing in (worst.peak_to_peak, worst.peak_to_peak_multibody)
     )
+    sizes = f"{lumped} here, {second_program} there, a difference of {share(worst.difference)}"
+    if lumped == second_program:
+        sizes = f"{lumped} in both, but momentary values differ by up to {share(worst.difference)} of that"
     return (
         f"In part{results.in_place_of_shafts}. A second program with exact contact does not confirm the "
-        f"{worst.long_name}: {lumped} here, {second_program} there, a difference of "
-        f"{share(worst.difference)}. {largest}"
+        f"{worst.long_name}: {sizes}. {largest}"
     )
 
 
