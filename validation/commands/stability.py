@@ -276,7 +276,7 @@ def floquet(
         periodic terms K_cos_1, K_sin_1, ..., C_cos_1, ... and steps K_times with K_values.
     axis NAME=FROM:TO:COUNT : Axis of a chart: frequency in Hz (1/period), variation (factor on the periodic
         terms), damping (factor on C). Give it twice for a chart of two axes.
-    rtol : Wanted error of the monodromy matrix.
+    rtol : Relative error of the matrix over one period; smaller is slower.
     """
     from floquet import monodromy, scan
     from floquet.engine.multipliers import STABLE
