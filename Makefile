@@ -8,6 +8,8 @@
 # make dist     build sdist and wheel into dist/, check them, try the wheel on every Python 3.11 or later found here
 # make lowest   try the oldest releases that pyproject.toml allows with a quick report (four minutes of processor time)
 # make docs     set up .venv if needed and build the documentation to build/docs; warnings are errors
+# make licences list the licences of spurcheck and of all that it needs to run, as their metadata state them
+# make audit    look for published vulnerabilities of all that it needs to run; asks the advisory database of the Python index
 # PYTHON=python3.12 chooses the interpreter, VENV=path another environment.
 
 PYTHON ?= python3
@@ -19,7 +21,7 @@ LOWEST ?= build/lowest
 export OPENBLAS_NUM_THREADS ?= 1
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 
-.PHONY: report reproduce evidence answers mutants test lint docs dist lowest clean
+.PHONY: report reproduce evidence answers mutants test lint docs dist lowest licences audit clean
 
 report: $(VENV)/.ready
 	$(BIN)/spurcheck report --output $(OUT) --force
@@ -72,6 +74,15 @@ $(VENV)/.ready-docs: $(VENV)/.ready
 
 dist:
 	.ci/dist
+
+licences: $(VENV)/.ready
+	@$(BIN)/python .ci/licences.py
+
+audit: $(VENV)/.ready
+	@$(PYTHON) -m venv --clear build/audit
+	@build/audit/bin/python -m pip install --quiet --disable-pip-version-check pip-audit
+	@$(BIN)/python -m pip freeze --exclude-editable --disable-pip-version-check > build/audit/requirements.txt && \
+	build/audit/bin/pip-audit --strict --no-deps --disable-pip --requirement build/audit/requirements.txt
 
 lowest:
 	@$(PYTHON) -m venv --clear $(LOWEST)

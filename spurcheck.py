@@ -139,6 +139,38 @@ class _PublicNames(list[str]):
 globals()["__all__"] = _PublicNames((*_SOURCES, *_PACKAGES))  # a plain list would hide names from a checker
 
 
+def _refuse_foreign_packages() -> None:
+    """Stop where another distribution has a package with the name of one of the four of spurcheck.
+
+    Nothing is imported. A foreign package may stand earlier on the path, or may have replaced the files.
+
+    Raises
+    ------
+    ImportError : one sentence that names the package and says what to do
+    """
+    from importlib.util import find_spec
+
+    for name in _PACKAGES:
+        expected = Path(__file__).resolve().with_name(name) / "__init__.py"
+        specification = find_spec(name)
+        origin = specification.origin if specification else None
+        if origin is None or Path(origin).resolve() != expected:
+            place = origin or "a folder without __init__.py" if specification else "nothing"
+        elif re.search(
+            "spurcheck|gear pair", expected.read_text("utf-8")
+        ):  # the docstring of each of the four
+            continue
+        else:
+            place = f"{origin}, which another distribution has replaced"
+        raise ImportError(
+            f"spurcheck needs its package {name!r}, but Python finds {place}: another distribution has a "
+            "package of this name, so install spurcheck into an environment of its own (python -m venv)."
+        )
+
+
+_refuse_foreign_packages()
+
+
 def _find(name: str) -> object:
     if name == "__version__":
         return metadata.version("spurcheck")
@@ -252,7 +284,12 @@ def __dir__() -> list[str]:
     return sorted(_NAMES)
 
 
-if __name__ == "__main__":
+def _command() -> None:
+    """Run the command ``spurcheck``."""
     from validation.cli import main
 
     main()
+
+
+if __name__ == "__main__":
+    _command()

@@ -21,7 +21,7 @@ extensions = [
     "extensions.gallery",
     "extensions.mathml",
     "extensions.docstrings",
-    "extensions.scripts",
+    "extensions.plain_mathematics",
     "extensions.contributing",
     "computed",
 ]

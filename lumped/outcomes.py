@@ -14,7 +14,10 @@ class Outcome(Enum):
 
     CONTACT_NOT_LOST = "Contact is never lost, so the linear motion is the motion."
     FAILED = "The computation failed."
-    NOT_ASKED = "It was not asked for."
+    NOT_ASKED = "This computation does not include it."
+    QUICK = "A quick report does not compute it. Run without --quick."
+    ALIKE = "All teeth of a gear are alike."
+    KNOWN = "No input is assumed or has a range."
     NO_SHAFTS = "No shafts are given."
 
     @property

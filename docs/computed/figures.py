@@ -11,7 +11,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import lumped
-import multibody
 from computed import GENERATED
 from computed.agreement import torque_series
 from computed.diagrams import svg
@@ -25,7 +24,6 @@ from validation import report
 from validation.files.output import write_dataset
 from validation.interactive.page import render
 from validation.interactive.results import compute
-from validation.plots.motion import cross_check_figure
 from validation.plots.stability import stability_figure
 from validation.plots.style import (
     BLUE,
@@ -195,14 +193,6 @@ def validity() -> str:
     return svg(figure)
 
 
-def overlay() -> str:
-    """Transmission error of both models, the first picture of the site."""
-    pair = _pair()
-    models = [lumped.simulate(pair, 20), multibody.simulate(pair, 20)]
-    everywhere = np.ones(models[0].sizes["time"], dtype=bool)
-    return svg(cross_check_figure(pair.geometry, models[0], {"exact": models[1]}, everywhere))
-
-
 def built_in_report() -> str:
     """The report of the built-in pair, whole, as a page of the site."""
     folder = GENERATED / "pages" / "report"
@@ -224,7 +214,6 @@ FILES: dict[str, Callable[[], str]] = {
     "tongues.svg": tongues,
     "torque_law.svg": torque_law,
     "validity.svg": validity,
-    "overlay.svg": overlay,
     "pages/explore.html": explore,
     "pages/report/index.html": built_in_report,
 }

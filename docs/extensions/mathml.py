@@ -12,6 +12,10 @@ from sphinx.application import Sphinx
 from sphinx.errors import ExtensionError
 from sphinx.writers.html5 import HTML5Translator
 
+_RELATION = re.compile(r"[()\[\]{}]|(?P<relation>=|<|>|\\(?:le|ge|approx|ne|in|propto)\b)")
+_FUNCTION = r"\\(?:sin|cos|tan|ln|log|exp|operatorname{(?:inv|sgn|mod|tr)})(?![A-Za-z])"
+#: Characters of LaTeX that stand in one line.
+_SHORT = 20
 _TAG = re.compile(r"\\tag\{([^}]*)\}")
 #: A dotted or barred symbol with an index, which docutils takes for limits below and above an operator.
 _ACCENTED = re.compile(
@@ -28,12 +32,18 @@ def mathml(latex: str, *, block: bool) -> str:
     ExtensionError : a command that has no MathML here
     """
     try:
-        found = str(tex2mathml(_braced(latex), as_block=block))
+        found = str(tex2mathml(_braced(_spaced(latex)), as_block=block))
     except MathError as error:
         raise ExtensionError(f"No MathML for {latex!r}: {error}") from None
     found = _ACCENTED.sub(r"<msub><mover>\1\3</mover>\2</msub>", found)
     # Chromium draws an accent through its letter where the font has no table of accent heights.
     return found.replace('<mover accent="true">', "<mover>")
+
+
+def _spaced(latex: str) -> str:
+    """Set a thin space between a function and the terms beside it, which docutils leaves out."""
+    behind = re.sub(rf"({_FUNCTION})(\^(?:\w|{{[^{{}}]*}}))?\s*(?=[\w\\])", r"\1\2\\,", latex)
+    return re.sub(rf"(?<=[\w}})])\s*(?={_FUNCTION})", r"\\,", behind)
 
 
 def _braced(latex: str) -> str:
@@ -61,8 +71,21 @@ def _argument(text: str) -> tuple[str, str]:
 
 
 def _inline(self: HTML5Translator, node: nodes.math) -> None:
-    self.body.append(mathml(node.astext(), block=False))
+    # Browsers do not break a line inside an equation: a long one is several, and a line may end between.
+    self.body.append("<wbr>".join(mathml(part, block=False) for part in _lines(node.astext())))
     raise nodes.SkipNode
+
+
+def _lines(latex: str) -> list[str]:
+    """Split a long equation before its relations; brackets stay together."""
+    depth, start, result = 0, 0, []
+    for token in _RELATION.finditer(latex):
+        depth += token[0] in {"(", "[", "{"}
+        depth -= token[0] in {")", "]", "}"}
+        if token["relation"] and depth == 0 and token.start() - start > _SHORT:
+            result.append(latex[start : token.start()])
+            start = token.start()
+    return [*result, latex[start:]]
 
 
 def _block(self: HTML5Translator, node: nodes.math_block) -> None:

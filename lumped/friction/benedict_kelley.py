@@ -32,7 +32,7 @@ RANGES = (
         "um",
         0.0,
         0.75,
-        "AGMA 925-A03 holds 1.13/(1.13 - S) at 3; from memory, not from the print",
+        "AGMA 925-A03 holds 1.13/(1.13 - S) at 3, source not checked",
     ),
     ValidityRange(
         "friction_number", "1", 1.0, None, "below 1 the logarithm is negative; the law is held at 0"

@@ -10,7 +10,7 @@ from lumped.friction.misfit import constant
 from lumped.ranges import ValidityRange, checked
 from lumped.typing import FloatArray
 
-_RECALLED = "limit of the formula in ISO/TR 14179-2 and Niemann and Winter; from memory, not from the print"
+_RECALLED = "limit of the formula in ISO/TR 14179-2, source not checked"
 RANGES = (
     ValidityRange("unit_load", "N/mm", 150.0, None, _RECALLED),
     ValidityRange("pitch_line_velocity", "m/s", None, 50.0, _RECALLED),

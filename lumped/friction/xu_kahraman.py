@@ -14,7 +14,7 @@ from lumped.typing import FloatArray
 #: Regression coefficients b1..b9.
 B = (-8.916465, 1.03303, 1.036077, -0.354068, 2.812084, -0.100601, 0.752755, -0.390958, 0.620305)
 
-_RECALLED = "solutions behind the regression, Xu 2005; from memory, not from the print"
+_RECALLED = "range of Xu's data, source not checked"
 RANGES = (
     ValidityRange("slide_to_roll", "1", 0.0, 2.0, "2 v_s/v_e with both surfaces rolling the same way"),
     ValidityRange("viscosity", "mPa s", 1.0, None, "log10(eta) enters as a positive factor"),

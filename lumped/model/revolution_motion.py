@@ -38,10 +38,10 @@ _ALL_SAMPLES = 65536
 class Touch(Enum):
     """How the teeth touch in a motion; the value is how a result says it."""
 
-    TIED = "fixed windows of contact, teeth tied (linear)"
-    WINDOWS = "fixed windows of contact, unilateral"
-    MOMENTARY = "own gaps and tip corners, unilateral"
-    LINEAR = "linear about the own static state of every pair"
+    TIED = "over the path of contact as prescribed; teeth are tied and may pull (linear)"
+    WINDOWS = "over the path of contact as prescribed; teeth may separate"
+    MOMENTARY = "where the gap of each tooth pair closes, tip corners included; teeth may separate"
+    LINEAR = "linear about the static state of each tooth pair; teeth may pull"
 
     @property
     def contact(self) -> ContactArgument:

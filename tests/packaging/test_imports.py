@@ -151,3 +151,35 @@ def test_a_name_that_two_packages_have_is_that_of_the_lumped_model():
 def test_it_runs_the_command():
     run = [sys.executable, "-m", "spurcheck", "--version"]
     assert subprocess.check_output(run, text=True).strip() == f"spurcheck {spurcheck.__version__}"
+
+
+IMPORTED = "import sys; sys.path[:0] = {paths!r}; import spurcheck; print(spurcheck.__file__)"
+
+
+@pytest.mark.parametrize("how", ["earlier on the path", "replaced", "without __init__.py"])
+def test_a_foreign_package_of_the_same_name_is_named_in_one_sentence(tmp_path, how):
+    """A distribution of the package index installs a folder ``validation``, too."""
+    root = Path(spurcheck.__file__).parent
+    site = tmp_path / "site"
+    site.mkdir()
+    (site / "spurcheck.py").write_text((root / "spurcheck.py").read_text(encoding="utf-8"))
+    for name in ("lumped", "multibody", "floquet", "validation"):
+        (site / name).mkdir()
+        (site / name / "__init__.py").write_text((root / name / "__init__.py").read_text(encoding="utf-8"))
+    paths = [str(site)]
+    command = [sys.executable, "-I", "-c", IMPORTED.format(paths=paths)]
+    alone = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert alone.stdout.strip() == str(site / "spurcheck.py")
+    if how == "replaced":
+        (site / "validation" / "__init__.py").write_text("VERSION = 1\n")
+    elif how == "without __init__.py":
+        (site / "validation" / "__init__.py").unlink()
+    else:
+        (tmp_path / "other" / "validation").mkdir(parents=True)
+        (tmp_path / "other" / "validation" / "__init__.py").write_text("VERSION = 1\n")
+        paths.insert(0, str(tmp_path / "other"))
+    command[-1] = IMPORTED.format(paths=paths)
+    foreign = subprocess.run(command, capture_output=True, text=True, check=False)
+    last = foreign.stderr.strip().splitlines()[-1]
+    assert last.startswith("ImportError: spurcheck needs its package 'validation', but Python finds ")
+    assert last.endswith("install spurcheck into an environment of its own (python -m venv).")

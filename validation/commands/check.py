@@ -58,9 +58,10 @@ def check(
 
     Parameters
     ----------
-    limit : Misfit up to which the curves agree.
+    limit : Largest misfit at which the curves count as equal.
     budget : Processor time of the search for explanations, in seconds.
-    phase : Mesh cycles from pair A at point A to the first sample; default: by correlation.
+    phase : Mesh cycles from the moment a tooth pair enters at point A to the first sample; default: the shift
+        at which the curves agree best.
     """
     from lumped.errors import refuse
     from validation.check import check as run

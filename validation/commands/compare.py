@@ -63,7 +63,7 @@ def compare(
 
     Parameters
     ----------
-    seed : Of the sampled points.
+    seed : Start of the random numbers: the same seed gives the same possible machines.
     """
     from validation.prediction.compare import compare as run
 

@@ -46,7 +46,7 @@ def simulate(
     Parameters
     ----------
     model : Which model to run.
-    fidelity : Of the multibody model.
+    fidelity : Multibody model: exact (its own contact, finite rotations) or linear (the lumped equations).
     cycles : Mesh cycles to run.
     samples : Output times per mesh cycle.
     initial : Start at rest under the mean load, or on the periodic motion.
@@ -189,7 +189,7 @@ def uncertainty(
 
     Parameters
     ----------
-    seed : Of the sampled points.
+    seed : Start of the random numbers: the same seed gives the same possible machines.
     """
     import numpy as np
 

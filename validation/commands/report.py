@@ -161,8 +161,8 @@ def crosscheck(
 
     Parameters
     ----------
-    limit : Largest difference that agrees, over the peak to peak, of the transmission error, tooth load and
-        motions along the line of action; of what friction drives it is 20%.
+    limit : Largest difference that counts as agreement, as a share of the peak to peak. It holds for the
+        transmission error, tooth load and motions along the line of action; motions by friction have 20%.
     cycles : Mesh cycles to run.
     samples : Output times per mesh cycle.
     """

@@ -53,14 +53,15 @@ def response(
 
     Parameters
     ----------
-    periods : Look for motions that repeat after 1 to so many cycles.
-    seeds : Speeds an octave at which runs settle, to find motions apart from the others and beats or chaos;
-        default 20, of a map 0.
+    periods : Look for motions that repeat after 1, 2, ... up to this number of mesh cycles.
+    seeds : Runs that settle, for each doubling of the speed: they find isolated motions, beats and chaos.
+        Default 20; with --map 0.
     map_ NAME[=FROM:TO:COUNT] : Map the jumps over speed and torque (N m), damping_ratio (mesh) or tip_relief
         (um), and find what removes them; default 26 values of the range that is searched.
     speeds : With --map: number of speeds.
     back_side : Also let the back sides of the teeth touch.
-    budget : Processor time of the search (s); what it leaves open is printed. Default: no limit.
+    budget : Processor time of the search (s); speeds that are not searched then are printed. Default: no
+        limit.
     """
     import numpy as np
 

@@ -206,7 +206,7 @@ def _rows(results: BudgetResults) -> Iterator[Row]:
     if pair.mesh.stiffness.whole_mesh:  # a curve that is used as given decides both
         stiffness = other_contact = "the stiffness of the whole mesh is given, with its contact"
     others: tuple[tuple[str, str, str, Prediction | Absent, str], ...] = (
-        ("contact", "form of the contact", "prescribed from A to D, or following the load",
+        ("contact", "form of the contact", "two assumptions on where teeth touch",
          _varied(results, other_contact), form),
         ("second", "exact contact and finite motions", "by the multibody model", results.second,
          "second program"),

@@ -260,7 +260,7 @@ def _write_data(results: Results, folder: Path) -> None:
         "sweep": results.sweep,
         "uncertainty": results.uncertainty,
         "budget": results.budget,
-        "teeth": Absent(Outcome.NOT_ASKED) if results.teeth is None else results.teeth.motion,
+        "teeth": Absent(Outcome.ALIKE) if results.teeth is None else results.teeth.motion,
         "stability": results.chart,
     }
     for number, branches in enumerate(results.jump_search.branches, 1):

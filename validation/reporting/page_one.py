@@ -18,10 +18,10 @@ from validation.reporting.verdict import Verdict, verdict_of
 
 _NOT_MODELLED = "Not modelled: helix; misalignment; housing and sound radiation."
 #: Sentence before ``_NOT_MODELLED`` for like teeth, and for unlike teeth.
-_ALIKE = "All teeth are taken as alike: no pitch errors, no sidebands."
+_ALIKE = "The teeth are perfect: the parameter file states no tooth errors, so there are no sidebands."
 _OWN = (
-    "Numbers are those of the teeth as given; ranges but that of the transmission error, the second program, "
-    "curves over speed and stability are of like teeth and stand in their chapters."
+    "The numbers are those of the teeth with their errors. Of perfect teeth are the second program, the "
+    "curves over speed, stability, and every range but that of the transmission error."
 )
 
 

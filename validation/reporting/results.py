@@ -202,8 +202,10 @@ class Results:
     @cached_property
     def uncertainty(self) -> xr.Dataset | Absent:
         """Samples of the prediction with varied inputs. Absent: the inputs are not varied."""
-        if not self.effort.samples or not uncertain_inputs(self.pair):
-            return Absent(Outcome.NOT_ASKED)
+        if not self.effort.samples:
+            return Absent(Outcome.QUICK)
+        if not uncertain_inputs(self.pair):
+            return Absent(Outcome.KNOWN)
         stage = self.stage("uncertain inputs")
         return uncertainty(self.pair, self.samples, seconds=self.effort.sample_seconds, progress=stage)
 

@@ -30,17 +30,23 @@ def _agreement_words(results: Results) -> str:
         return "The equations are; the second program has no motion to compare."
     if check.verdict is Verdict.FAILS:
         return "No: a check of the program fails."
-    on_shafts = "" if results.pair.shafts is None else " on the shafts"
-    largest = f"{_largest_difference(results.like, second)}{on_shafts}"
+    largest = _largest_difference(
+        results.like, second, "" if results.pair.shafts is None else " on the shafts"
+    )
     if check.verdict is Verdict.AGREES:
-        return f"Yes: a second program agrees{results.in_place_of_shafts}. Its {largest}."
+        return f"Yes: a second program agrees{results.in_place_of_shafts}. {largest}"
     if all(agreement.within for agreement in check.of("exact")):
-        return f"Yes, but of the second program, whose motion agrees: {loss_difference(check)}"
+        return f"Only the motion: a second program confirms it. {loss_difference(check)}"
     worst = check.worst("exact")
-    swings = (quantity(swing, worst.unit, 3) for swing in (worst.peak_to_peak_multibody, worst.peak_to_peak))
+    lumped, second_program = (
+        quantity(swing, worst.unit, 3) for swing in (worst.peak_to_peak, worst.peak_to_peak_multibody)
+    )
+    sizes = f"{lumped} here, {second_program} there, a difference of {share(worst.difference)}"
+    if lumped == second_program:
+        sizes = f"{lumped} in both, but momentary values differ by up to {share(worst.difference)} of that"
     return (
-        f"Yes, but the second program, with exact contact, differs{results.in_place_of_shafts}: "
-        f"{worst.long_name}, {' beside '.join(swings)}, by {share(worst.difference)}. Its {largest}."
+        f"In part{results.in_place_of_shafts}. A second program with exact contact does not confirm the "
+        f"{worst.long_name}: {sizes}. {largest}"
     )
 
 
@@ -56,11 +62,11 @@ class _Compared(NamedTuple):
         return abs(self.second / self.prediction - 1.0) if self.prediction else 0.0
 
 
-def _largest_difference(prediction: Prediction, second: Prediction) -> str:
-    """Words on the number of page 1 that differs most between the two programs."""
+def _largest_difference(prediction: Prediction, second: Prediction, supports: str) -> str:
+    """Sentence on the number of page 1 that differs most. ``supports``: " on the shafts", or nothing."""
     numbers = {name: _Compared(prediction.numbers[name], second.numbers[name]) for name in _COMPARED}
     name = max(numbers, key=lambda one: numbers[one].difference)
     number = numbers[name]
     unit, _ = QUANTITIES[name]
-    values = f"{quantity(number.second, unit, 3)} beside {quantity(number.prediction, unit, 3)}"
-    return f"{SHORT[name]} differs most: {values}, by {share(number.difference)}"
+    values = f"{quantity(number.prediction, unit, 3)} here, {quantity(number.second, unit, 3)} there"
+    return f"Of page 1 the {SHORT[name]} differs most, by {share(number.difference)}: {values}{supports}."

@@ -126,20 +126,19 @@ class TeethFindings:
             share = float(ratio.max())
             hertz = self.pair.geometry.mesh_frequency / z
             size = (
-                f"{100 * share:.2g} % of it at order {z + largest_sideband}"
+                f"the largest is {100 * share:.2g} % of the mesh tone, at order {z + largest_sideband}"
                 if share >= _SEEN
-                else "below 1 % of it"
+                else "all below 1 % of the mesh tone"
             )
             rms = self.indicators(gear)["value"].sel(indicator="RMS_residual")
             times = float(rms.sel(record="pair") / rms.sel(record="healthy twin"))
             parts.append(
-                f"the mesh tone has sidebands every {hertz:.3g} Hz, once a turn of the {gear}, {size}, "
-                f"and an accelerometer shows {times:.2g} times the residual signal of like teeth"
+                f"Sidebands at a spacing of {hertz:.3g} Hz ({gear}): {size}. "
+                f"Residual signal: {times:.2g} times that of perfect teeth."
             )
         lost = self.contact_lost
-        contact_words = f"; contact is lost at {len(lost)} meeting teeth" if lost else "; contact is kept"
-        text = f"{'; '.join(parts) or 'only the torque differs'}{contact_words}."
-        return text[0].upper() + text[1:]
+        contact_words = f"Contact is lost at {len(lost)} meeting teeth." if lost else "Contact is kept."
+        return " ".join([*(parts or ["Only the torque differs."]), contact_words])
 
     def _turns(self, gear: Gear) -> bool:
         return bool(getattr(self.pair, gear).has_own_teeth)
@@ -185,4 +184,4 @@ def rpm_and_period(findings: TeethFindings) -> str:
         f"{findings.period / getattr(pair, gear).teeth:g} turns of the {gear}" for gear in GEARS
     )
     rpm = to_stated(pair.operating.pinion_speed, "rpm")
-    return f"{rpm:.5g} rpm the motion repeats after {findings.period} mesh cycles, {turns}"
+    return f"{rpm:.5g} rpm, computed over {turns} ({findings.period} mesh cycles)"

@@ -293,6 +293,6 @@ def stability(multipliers: GearPairMultipliers) -> Flag:
         "stability",
         state,
         radius,
-        f"{multipliers.verdict_words}: largest multiplier {radius:.6f}, error bound {error:.1e}; the rigid "
-        "rotation is taken out, not tolerated",
+        f"{multipliers.verdict_words}: largest multiplier {radius:.6f}, error at most {error:.1e}. The rigid "
+        "rotation of both gears is excluded",
     )

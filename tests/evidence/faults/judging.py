@@ -5,7 +5,6 @@ import tomllib
 import warnings
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import redirect_stdout
-from dataclasses import dataclass, field
 from functools import lru_cache
 from io import StringIO
 
@@ -16,7 +15,8 @@ from lumped.model.periodic_system import without_shafts
 from lumped.typing import FloatArray
 from tests.evidence.check import failing
 from tests.evidence.faults.fault import Fault
-from tests.evidence.faults.quantities import FELT, change, quantities
+from tests.evidence.faults.outcome import Outcome
+from tests.evidence.faults.quantities import change, quantities
 from tests.evidence.faults.rewriting import applied
 from tests.evidence.kinds import OF_PAIRS
 from tests.evidence.pairs import pairs
@@ -28,26 +28,6 @@ from validation.reporting.results import Results
 
 _CYCLES = 6
 _SAMPLES = 64
-
-
-@dataclass(frozen=True)
-class Outcome:
-    """What became of one fault."""
-
-    size: float  # largest change of a quantity of the report over its largest value, and which
-    quantity: str
-    caught: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-    seconds: float = 0.0  # time of the parts
-
-    @property
-    def felt(self) -> bool:
-        """Whether the fault changes a quantity by more than ``FELT``."""
-        return not self.size <= FELT
-
-    @property
-    def first(self) -> str:
-        """The first check that fails. Empty: no check sees the fault."""
-        return next((f"{part}: {checks[0]}" for part, checks in self.caught.items() if checks), "")
 
 
 def judge(fault: Fault, *, thorough: bool = True) -> Outcome:

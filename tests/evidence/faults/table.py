@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from tests.evidence.faults.fault import FAULTS, GROUPS, Fault
-from tests.evidence.faults.judging import Outcome
+from tests.evidence.faults.outcome import Outcome
 
 #: What ends the name of a law that is checked for each axis or bearing.
 _AXIS = re.compile(r" [xy](_[pg])?$")

@@ -664,7 +664,9 @@ def test_the_table_of_evidence(written):
         f"Of {faults['all']} faults put into the program, {faults.get('missed', 0)} are missed by all checks."
     )
     assert chapter["tables"]["evidence"]["note"] == note
-    assert ("They are of this source." in chapter["text"][1][0]) == (stored["source_sha256"] == source_hash())
+    assert ("They were made with this version." in chapter["text"][1][0]) == (
+        stored["source_sha256"] == source_hash()
+    )
 
 
 @recomputes("assumptions", name="assumption", state="", detail="found", action="what to do")

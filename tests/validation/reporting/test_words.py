@@ -27,7 +27,7 @@ from validation.reporting.effort import QUICK
 from validation.reporting.first_figures import plain_name
 from validation.reporting.hazards import Hazard
 from validation.reporting.page_one import _remark, page_one
-from validation.reporting.results import Results
+from validation.reporting.results import SHORT, Results
 from validation.reporting.second_program_words import second_program_words
 from validation.reporting.verdict import Verdict
 
@@ -250,9 +250,10 @@ def test_how_sure(written):
     most = max(apart, key=apart.__getitem__)
     unit = {"dte_peak_to_peak": "m", "bearing_rms": "N"}.get(most, "1")
     pattern = (
-        rf"Yes: a second program agrees\. Its {RANGED[most]} differs most: (.*) beside (.*), by (.*) %\."
+        rf"Yes: a second program agrees\. Of page 1 the {RANGED[most]} differs most, by (.*) %: "
+        r"(.*) here, (.*) there\."
     )
-    of_second, of_prediction, share = re.fullmatch(pattern, sentence).groups()
+    share, of_prediction, of_second = re.fullmatch(pattern, sentence).groups()
     recomputed.assert_printed(of_second, second[most], unit, 3)
     recomputed.assert_printed(of_prediction, first[most], unit, 3)
     recomputed.assert_printed(share, 100.0 * apart[most], "1", 2)
@@ -275,10 +276,10 @@ def test_where_the_second_program_differs(written):
     name = "pinion displacement off the line of action"
     recomputed.assert_says(
         plain(second_program_words(results)),
-        r"Yes, but the second program, with exact contact, differs: (.*), (.*) beside (.*), by (.*) %\. "
-        r"Its .*",
+        r"In part\. A second program with exact contact does not confirm the (.*): (.*) here, (.*) there, "
+        r"a difference of (.*) %\. Of page 1 the .*",
         name,
-        *((factor * size, "m") for factor in (1.3, 1.0)),
+        *((factor * size, "m") for factor in (1.0, 1.3)),
         (100.0 * differences[name], "1"),
         digits=2,
     )
@@ -528,9 +529,10 @@ def test_on_shafts_the_second_program_is_judged_on_the_shafts():
         vars(results)["second"] = replace(like, peak_to_peak=factor * like.peak_to_peak)
         sentence = plain(second_program_words(results))
         assert sentence.startswith(
-            "Yes: a second program agrees, on the springs of [bearings]. Its transmission"
+            "Yes: a second program agrees, on the springs of [bearings]. "
+            f"Of page 1 the {SHORT['dte_peak_to_peak']} differs most, {words}: "
         )
-        assert sentence.endswith(f"{words} on the shafts.")
+        assert sentence.endswith(" there on the shafts.")
 
 
 def test_a_pair_too_slow_for_the_second_program_has_a_report():

@@ -145,7 +145,9 @@ def _program(evidence: Mapping[str, Any], source: str) -> tuple[Block, ...]:
     """Paragraph and table on the program itself, the same for all pairs. ``source``: hash of the source."""
     same = evidence["source_sha256"] == source
     made = f"Checks of the program itself were computed on {evidence['date']}. "
-    made += "They are of this source." if same else "The source has changed since: run “make evidence”."
+    made += (
+        "They were made with this version." if same else "The source has changed since: run “make evidence”."
+    )
     faults = evidence["faults"]
     note = (
         f"Of {faults['all']} faults put into the program, {faults.get('missed', 0)} are missed by all checks."

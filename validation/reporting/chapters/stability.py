@@ -35,8 +35,8 @@ def write(results: Results) -> Content:
     words = (
         "How fast a disturbance grows or decays over speed and mesh damping. Black line: edge of "
         f"instability. {number(100 * float(chart['known'].mean()), 2)} % of the nodes are evaluated: the "
-        "lowest damping and both sides of every edge. A region can only be missed that lies between "
-        "evaluated nodes and does not reach the lowest damping. All nodes are in stability.nc."
+        "lowest damping and both sides of every edge. An unstable region that is narrower than the grid may "
+        "be missed. All nodes are in stability.nc."
     )
     operating_point = {"speed_rpm": results.operating_rpm, "damping_ratio": damping}
     regions = labelled_dataset(
