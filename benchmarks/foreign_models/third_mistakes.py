@@ -14,7 +14,6 @@ from scipy.signal import butter, sosfilt, sosfilt_zi
 from benchmarks.foreign_models import mistakes as m
 from benchmarks.foreign_models.drawing import Drawing, Line, Wheel, drawing_of
 from benchmarks.foreign_models.laws import Law
-from benchmarks.foreign_models.mistakes import Mistake
 from benchmarks.foreign_models.model import Model, table_of
 from benchmarks.foreign_models.recipe import Curves
 
@@ -27,7 +26,7 @@ NEWTONS_PER_POUND = 4.4482216
 def entered(**changes: Any) -> Callable[[Drawing], Drawing]:
     """Other values of the parameter file, from which the user's program computes the rest.
 
-    A value is named by its path, with two underscores for a point. A function computes the value from the old one.
+    A value is named by its path, with two underscores for a point. A function computes it from the old one.
     """
 
     def change(drawing: Drawing) -> Drawing:
@@ -193,6 +192,11 @@ def reversed_in_middle(model: Model, law: Law) -> Law:
     return lambda xi: np.abs(law(xi)) * np.sign(xi - middle)
 
 
+def never_reversed(model: Model, law: Law) -> Law:
+    """Friction keeps the direction that it has in recess."""
+    return lambda xi: np.abs(law(xi))
+
+
 # --- bodies, supports ------------------------------------------------------------------------------------
 
 
@@ -226,33 +230,17 @@ def stiffness_of_all_bearings(factor: float) -> Callable[[Drawing], Drawing]:
     )
 
 
-def gear_mirrored(curves: Curves, model: Model) -> Curves:
-    """Turn the sign of the gear's displacement and force along the line of action."""
-    names = ("x_g", "x_g_dot", "bearing_force_x_g")
-    return curves | {name: -curves[name] for name in names}
-
-
-#: With x_g = -x the model that has +x_g in its approach and the right force on the gear is the model with
-#: the right approach and the wrong force: its curves are then mirrored.
-GEAR_SIGN = Mistake(
-    "the displacement of the gear along the line of action has a plus sign in the approach of the flanks",
-    model=m.sign(force_sign_xg=-1.0),
-    curves=gear_mirrored,
-)
-
 # --- export ----------------------------------------------------------------------------------------------
 
 
 def recorder_filter(share: float) -> Callable[[Curves, Model], Curves]:
-    """Butterworth filter of second order on the bearing forces, its corner a multiple of the mesh frequency."""
+    """Butterworth filter of order 2 on the bearing forces, its corner a multiple of the mesh frequency."""
 
     def change(curves: Curves, model: Model) -> Curves:
         step = curves["time"][1] - curves["time"][0]
         sections = butter(2, 2.0 * share * step / model.period, output="sos")
         start = sosfilt_zi(sections)
-        smooth = {
-            name: sosfilt(sections, curves[name], zi=start * curves[name].mean())[0] for name in FORCES
-        }
+        smooth = {name: sosfilt(sections, curves[name], zi=start * curves[name].mean())[0] for name in FORCES}
         return curves | smooth
 
     return change
