@@ -176,7 +176,7 @@ GEOMETRY = [
         ("mesh_force", "dte"),
         (
             Mistake(
-                "the contact ratio is the path over the circular pitch, not the base pitch: pairs part early",
+                "the contact ratio is the path over the circular pitch, not the base pitch: pairs end early",
                 line=t.overlap_by_circular_pitch(25.0),
             ),
         ),
