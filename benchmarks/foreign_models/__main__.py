@@ -10,22 +10,24 @@ from benchmarks.foreign_models.cases import KINDS, cases
 from benchmarks.foreign_models.differences import differences
 from benchmarks.foreign_models.recipe import Recipe
 from benchmarks.foreign_models.second import held_back
+from benchmarks.foreign_models.third import judging
 
-#: The argument that takes the second set.
-HELD_BACK = "held_back"
+#: The argument that takes another set than the first, and what lists its cases.
+OTHER_SETS = {"held_back": held_back, "judging": judging}
 
 
 def main(arguments: list[str]) -> None:
     """Print a line for every case of the kinds, or whose name has a word of the arguments in it.
 
-    The argument "held_back" takes the second set instead of the first.
+    The argument "held_back" takes the second set instead of the first, "judging" the third.
     """
     warnings.simplefilter("ignore")
     kinds = [word for word in arguments if word in KINDS]
-    words = [word for word in arguments if word not in (*KINDS, HELD_BACK)]
+    words = [word for word in arguments if word not in (*KINDS, *OTHER_SETS)]
+    every = next((listed for name, listed in OTHER_SETS.items() if name in arguments), cases)
     print("| name | kind | truth | pair | channels | s | off as written, off in shape [%] |")
     print("|---|---|---|---|---|---|---|")
-    for case in held_back() if HELD_BACK in arguments else cases():
+    for case in every():
         if (kinds and case.kind not in kinds) or (words and not any(word in case.name for word in words)):
             continue
         start = time.perf_counter()

@@ -1,11 +1,14 @@
 """Agreement of the sound, fine motions of the users with ``lumped.steady_state``, at all operating points.
 
-python -m benchmarks.foreign_models.agreement
+python -m benchmarks.foreign_models.agreement [judging]
 """
 
 from __future__ import annotations
 
+import sys
 import warnings
+from collections.abc import Iterator, Mapping
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -13,24 +16,46 @@ import lumped
 from benchmarks.foreign_models.differences import orders_of
 from benchmarks.foreign_models.recipe import Recipe, Settings
 from benchmarks.foreign_models.sound import RUNS, changed_pair, is_torsional
+from benchmarks.foreign_models.third import THIRD_WRONG
+from benchmarks.foreign_models.third_two import THIRD_TWO
 
 SIX = ("dte", "x_p", "x_g", "y_p", "y_g", *(f"bearing_force_{a}_{e}" for a in "xy" for e in "pg"))
 
 
-def main() -> None:
-    """Print, for each operating point, how far complex orders and means are off [%]."""
+class Point(NamedTuple):
+    """Operating point: a pair as a mapping, and what the sound user of it models."""
+
+    pair: Mapping[str, Any]
+    unilateral: bool
+    torsional: bool
+
+
+def operating_points(judging: bool) -> Iterator[Point]:
+    """Operating points of the first set, or of the third."""
+    if judging:
+        for one in (*THIRD_WRONG, *THIRD_TWO):
+            yield Point(one.pair, one.unilateral, one.torsional)
+        return
+    for run in RUNS:
+        pair = changed_pair(run.pair, run.speed, run.torque)
+        yield Point(pair, run.unilateral, is_torsional(run.pair))
+
+
+def main(arguments: list[str]) -> None:
+    """Print, for each operating point, how far complex orders and means are off [%].
+
+    The argument "judging" takes the third set.
+    """
     warnings.simplefilter("ignore")
     print("| pair | rpm | N m | contact | orders 1 to 40: largest | of dte | means: largest |")
     print("|---|---|---|---|---|---|---|")
-    for run in RUNS:
-        pair = changed_pair(run.pair, run.speed, run.torque)
-        contact = "unilateral" if run.unilateral else "linear"
+    for pair, unilateral, torsional in operating_points("judging" in arguments):
+        contact = "unilateral" if unilateral else "linear"
         ours = lumped.steady_state(pair, contact=contact, samples_per_cycle=512)
-        torsional = is_torsional(run.pair)
         silent = ("y_p", "y_g", "bearing_force_y_p", "bearing_force_y_g")
         names = [name for name in SIX if pair["friction"]["law"] != "none" or name not in silent]
         names = ["dte"] if torsional else names
-        recipe = Recipe(pair, Settings(channels=tuple(names)), run.unilateral, torsional).sound
+        recipe = Recipe(pair, Settings(channels=tuple(names)), unilateral, torsional).sound
         theirs = recipe()
         period = recipe.user_model.period
         off, mean = {}, {}
@@ -41,10 +66,11 @@ def main() -> None:
             mean[name] = abs((mine[0] - reference[0]).real) / max(
                 abs(reference[0]), np.ptp(ours[name].to_numpy())
             )
-        cells = (run.pair, f"{run.speed:.0f}", f"{run.torque:g}", contact)
+        point = pair["operating"]
+        cells = (pair["name"], f"{point['pinion_speed']:.0f}", f"{point['pinion_torque']:g}", contact)
         numbers = (max(off.values()), off["dte"], max(mean.values()))
         print("| " + " | ".join((*cells, *(f"{100 * one:.2f}" for one in numbers))) + " |", flush=True)
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1:])
