@@ -181,6 +181,10 @@ def marked(pair: GearPair, sources: Mapping[str, str]) -> GearPair:
     return load_gear_pair(pair.to_mapping() | {"sources": dict(sources), "assumed": assumed})
 
 
+#: Fields without which no load is assumed.
+_SIZE = {"basic_rack.module", "pinion.face_width", "pinion.teeth"}
+
+
 def reasons(pair: GearPair) -> dict[str, str]:
     """Return assumed field -> reason for the value.
 
@@ -193,8 +197,11 @@ def reasons(pair: GearPair) -> dict[str, str]:
         for part in parents:
             node = node[int(part) if isinstance(node, list) else part]
         node.pop(leaf, None)  # a default that follows from other fields is not written
+    known = _values(stated)
+    if not known.keys() >= _SIZE and not any(path in known for path in _LOADS):
+        return {}  # an example pair, all of which is assumed
     try:
-        filled = _filled({"name": pair.name}, _values(stated))
+        filled = _filled({"name": pair.name}, known)
     except ParameterError:  # such as a kind of stiffness that the program would not assume
         return {}
     assumptions = filled.assumed.to_mapping() | leaf_paths(filled)

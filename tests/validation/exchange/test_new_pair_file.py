@@ -7,6 +7,7 @@ import pytest
 from typer.testing import CliRunner
 
 from lumped import State, load_gear_pair
+from lumped.schema.files import preset_names
 from lumped.schema.pair import leaf_paths
 from validation.cli import app
 from validation.exchange import parameter_text
@@ -140,6 +141,15 @@ def test_a_value_edited_in_the_text_is_known_and_the_rest_assumed():
     varied = load_gear_pair(tomllib.loads(relief))
     assert varied.state("pinion.tip_relief.amount") is State.KNOWN
     assert {*varied.assumed} - {*pair.assumed} == {"pinion.tip_relief.shape"}
+
+
+@pytest.mark.parametrize("name", preset_names())
+def test_a_preset_says_why_where_the_program_would_assume_it_too(name):
+    """One preset is an example all of which is assumed: the program has no reason for any of it."""
+    pair = load_gear_pair(name)
+    known = reasons(pair)
+    assert known.keys() <= pair.assumed.keys()
+    assert bool(known) == (name != "high_contact_ratio_29_47")
 
 
 def test_an_assumption_of_the_user_has_not_the_reason_of_the_program():
