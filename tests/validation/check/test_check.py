@@ -184,6 +184,7 @@ def test_a_rotation_whose_torques_do_not_balance_drifts():
     assert f"{brake:.5g} N m" in remark
     drawn = figure_data(result.problem).sel(channel="theta_p")
     assert np.ptp(drawn["theirs"].to_numpy()) == pytest.approx(np.ptp(drawn["ours"].to_numpy()), rel=0.1)
+    assert np.nanmax(drawn["scatter"].to_numpy()) < 0.1 * np.ptp(drawn["ours"].to_numpy())
     assert not check(pair, sampled(pair, ("dte", "theta_p"), cycles=12)).remarks
 
 
