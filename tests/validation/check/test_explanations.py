@@ -115,6 +115,8 @@ FIXED = {
 #: Further fixed values of these causes: name of the cause, label.
 FURTHER = (
     ("friction over the path", "leading pair"),
+    ("part of friction", "no moment on the gear"),
+    ("profile shifts", "wrong sign: gear"),
     ("friction over the path", "total load on the leading pair"),
     ("stiffness over the mesh cycle", "whole mesh for each pair"),
     ("stiffness over the mesh cycle", "first harmonic"),
@@ -145,6 +147,9 @@ FREE = {
     "bearing damping across the line of action": 3.0,
     "face width": 0.8,
     "addendum": 0.93,
+    "addendum of the pinion": 0.9,
+    "addendum of the gear": 0.93,
+    "numerical damping": 2.0,
     "centre distance": 1.003,
     "module": 1.07,
     "friction coefficient": 1.5,

@@ -77,6 +77,14 @@ def _friction_part(problem: Problem, variant: Variant) -> list[Choice]:
         _altered(
             "no forces", "friction forces on the translations forgotten", force_pinion=0.0, force_gear=0.0
         ),
+        *(
+            _altered(
+                f"no {part} on the {gear}", f"the friction {part} on the {gear} forgotten", **{field: 0.0}
+            )
+            for part in ("moment", "force")
+            for gear in ("pinion", "gear")
+            if getattr(variant.physics, field := f"{part}_{gear}") != 0.0
+        ),
     ]
 
 
@@ -228,7 +236,10 @@ def _causes() -> Iterator[Cause]:
         "friction sign", "friction with the wrong sign", "all, moments, forces, one gear", _friction_sign
     )
     yield altered(
-        "part of friction", "moments or forces of friction forgotten", "moments, forces", _friction_part
+        "part of friction",
+        "moments or forces of friction forgotten",
+        "moments, forces; both gears, one gear",
+        _friction_part,
     )
     yield altered(
         "friction over the path",

@@ -11,6 +11,7 @@ from typing import Any
 
 from lumped.fields.units import to_stated
 from lumped.friction.registry import FRICTIONAL
+from lumped.path_of_contact.stiffness import pair_stiffness
 from lumped.schema.bodies import bodies_of, solid_disc
 from lumped.schema.pair import GearPair
 from lumped.stiffness.registry import MODELS
@@ -20,13 +21,16 @@ from validation.check.problem import Problem
 
 #: Trial factors: of a stiffness, of a load or a mass, of a damper, of a bearing.
 _NEAR = (0.4, 0.63, 0.8, 1.25, 1.6, 2.5)
-_MASS = (0.35, 0.6, 0.8, 1.25, 1.7, 2.8)
+_MASS = (0.35, 0.6, 0.8, 1.25, 1.7, 2.8, 8.0, 25.0)
 _DAMPER = (0.1, 0.4, 2.5, 10.0)
 _BEARING = (0.01, 0.1, 0.4, 2.5, 10.0, 100.0)
 _LENGTH = (0.8, 0.87, 0.94, 1.06, 1.13, 1.25)
 _CENTRES = (0.99, 0.993, 0.9955, 0.998, 1.002, 1.0045, 1.007, 1.01)
 #: A centre distance is the standard one up to this share.
 _SAME_CENTRE = 1e-4
+#: Trial steps of an integrator, and steps of 1 in a mesh cycle.
+_STEPS = (-2.0, -0.5, 0.5, 2.0, 6.0)
+_STEPS_PER_CYCLE = 500.0
 _GEARS = ("pinion", "gear")
 _LINES = ("loa", "oloa")
 _PRESSURE_ANGLES = (14.5, 17.5, 20.0, 22.5, 25.0)
@@ -132,6 +136,37 @@ def _tips(pair: GearPair) -> Fields:
     }
 
 
+def _addendum_of(gear: str) -> Callable[[GearPair, float], Fields]:
+    """Tip diameter of one gear, for its addendum times a factor."""
+    field = f"{gear}.tip_diameter"
+    return lambda pair, value: {field: _addendum(pair, value)[field]}
+
+
+def _with_steps(variant: Variant, value: float) -> Variant:
+    """Damping ratios as by Euler steps h: each motion at omega gets h omega/2 more, negative: explicit.
+
+    The implicit step solves y' = A y - h/2 A^2 y in first order of h, so that a mode decays by h omega^2/2
+    more. A spring k on a mass m gets the damper h k, which is h sqrt(k/m)/2 as a damping ratio.
+    """
+    pair = variant.pair
+    bodies = bodies_of(pair)
+    half = 0.5 * value / _STEPS_PER_CYCLE * pair.geometry.mesh_period
+
+    def ratio(before: float, stiffness: float, mass: float) -> float:
+        return min(max(before + half * math.sqrt(stiffness / mass), 0.0), 1.0)
+
+    of_pair = pair_stiffness(pair).mean()
+    fields = {"mesh.damping_ratio": ratio(pair.mesh.damping_ratio, of_pair, bodies.effective_mass)}
+    for gear in _GEARS:
+        bearing = getattr(pair.bearings, gear)
+        mass = getattr(bodies, f"mass_{gear}")
+        for line in _LINES:
+            name = f"{line}_damping_ratio"
+            stiffness = getattr(bearing, f"{line}_stiffness")
+            fields[f"bearings.{gear}.{name}"] = ratio(getattr(bearing, name), stiffness, mass)
+    return variant.with_inputs(fields)
+
+
 def _centre_distance(pair: GearPair, value: float) -> Fields:
     shifts = {f"{gear}.profile_shift": x for gear, x in zip(_GEARS, pair.profile_shifts, strict=True)}
     return {
@@ -226,6 +261,20 @@ def _free() -> Iterator[Cause]:
             )
     yield free("face width", "the face width of both gears", _NEAR, _width)
     yield free("addendum", "the addenda of both gears", _LENGTH, _addendum)
+    for gear in _GEARS:
+        yield free(f"addendum of the {gear}", f"the addendum of the {gear}", _LENGTH, _addendum_of(gear))
+    yield Cause(
+        name="numerical damping",
+        kind=Kind.INPUT,
+        meaning="damping by steps of an integrator: implicit Euler steps add it, explicit ones take it away",
+        span="steps of about 1/1000 to 1/50 of a mesh cycle, negative: explicit",
+        grid=_STEPS,
+        neutral=0.0,
+        change=_with_steps,
+        words="damping as by implicit Euler steps (negative: explicit ones) of {value} of a mesh cycle",
+        shown=lambda value: value / _STEPS_PER_CYCLE,
+        applies=_on_springs,
+    )
     yield free("centre distance", "the centre distance", _CENTRES, _centre_distance)
     yield free("module", "the module, with every length of the transverse section", _LENGTH, _module)
 
@@ -438,14 +487,15 @@ def _shifts(problem: Problem, variant: Variant) -> list[Choice]:
         choices.append(
             _choice("ignored", "profile shifts ignored", lambda pair: {**none, "centre_distance": None})
         )
-        reversed_shifts = none | {"pinion.profile_shift": -first, "gear.profile_shift": -second}
-        choices.append(
-            _choice(
-                "wrong sign",
-                "profile shifts with the wrong sign",
-                lambda pair: {**reversed_shifts, "centre_distance": None},
-            )
-        )
+        signs = (("both", -first, -second), ("pinion", -first, second), ("gear", first, -second))
+        for which, pinion, gear in signs:
+            if (pinion, gear) == (first, second):  # a shift of 0 has no sign
+                continue
+            fields = none | {
+                "pinion.profile_shift": pinion, "gear.profile_shift": gear, "centre_distance": None
+            }  # fmt: skip
+            words = "profile shifts" if which == "both" else f"a profile shift of the {which}"
+            choices.append(_choice(f"wrong sign: {which}", f"{words} with the wrong sign", _constant(fields)))
     standard = sum(_reference_radii(variant.pair)) / variant.pair.geometry.centre_distance
     if abs(standard - 1.0) > _SAME_CENTRE:
         words = "the standard centre distance, half of the module times the sum of the teeth"
@@ -594,7 +644,7 @@ def _fixed() -> Iterator[Cause]:
     yield fixed(
         "profile shifts",
         "profile shifts ignored, exchanged or with the wrong sign; the standard centre distance",
-        "ignored, wrong sign, standard centre, exchanged",
+        "ignored, wrong sign (both, one gear), standard centre, exchanged",
         _shifts,
     )
     yield fixed(
