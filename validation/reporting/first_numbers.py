@@ -154,7 +154,7 @@ def _hazard_row(results: Results, fact: Fact) -> Number:
         note = f"{hazard.words} at {rpm(hazard.speed_rpm)}"
     else:
         note = "jumps were not searched to the end" if searched is None else f"none found {fact.scope.speeds}"
-    note = f"{note}{results.on_springs}; {proof_words(results)}"
+    note = f"{note}; {proof_words(results)}{results.on_springs}"
     return Number("hazard", label, distance, "rpm", note=note, scope=fact.scope.words)
 
 
