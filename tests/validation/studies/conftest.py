@@ -1,7 +1,9 @@
 """A study of a few cheap cases, and its undisturbed result to compare with."""
 
 import dataclasses
+import sys
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -10,6 +12,9 @@ from validation.studies import Study, load_study, run_sweep
 from validation.studies.analyses import ANALYSES
 
 Make = Callable[..., Study]
+
+# Worker processes find the evaluators of ``odd_evaluators`` here.
+sys.path.insert(0, str(Path(__file__).parent))
 
 
 @pytest.fixture(scope="session")

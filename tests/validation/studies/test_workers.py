@@ -5,7 +5,6 @@ import subprocess
 import sys
 import time
 from concurrent.futures import Future, ThreadPoolExecutor
-from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -14,9 +13,6 @@ from lumped.errors import ParameterError
 from validation.studies import Cluster, Status, StoreError, SweepStopped, run_sweep, runner, workers
 from validation.studies.cases import CaseList, StudyEvaluator
 from validation.studies.store import provenance, read_table
-
-#: Worker processes find the evaluators of ``odd_evaluators`` here.
-sys.path.insert(0, str(Path(__file__).parent))
 
 
 @pytest.fixture
