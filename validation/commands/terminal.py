@@ -26,7 +26,6 @@ from rich.text import Text
 from typer.core import TyperCommand
 
 from validation.files.formatting import number, quantity
-from validation.files.output import WORKING_FOLDER_DELETED, working_folder_deleted
 
 if TYPE_CHECKING:
     from lumped.typing import Progress
@@ -216,6 +215,8 @@ def guarded(command: Callable[..., None]) -> Callable[..., None]:
         except SpurcheckError as error:
             fail(str(error), NUMERICAL)
         except OSError as error:
+            from validation.files.output import WORKING_FOLDER_DELETED, working_folder_deleted
+
             if working_folder_deleted():
                 fail(WORKING_FOLDER_DELETED, REFUSED)
             if error.filename:
