@@ -35,7 +35,7 @@ from lumped.quasi_static.contacts import mesh_elements
 from lumped.quasi_static.elements import mean_of_pairs
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
-from lumped.typing import FloatArray, Progress
+from lumped.typing import FloatArray, ProgressRequest
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -242,6 +242,7 @@ def single_degree(pair: AnyPair, *, stiffness: Stiffness = "pair", rtol: float =
     )
 
 
+@shows_progress("stability chart")
 def single_degree_chart(
     pair: AnyPair,
     axes: Axes | None = None,
@@ -252,7 +253,7 @@ def single_degree_chart(
     prove: bool = False,
     rtol: float = 1e-10,
     store: Literal["all", "radius"] = "radius",
-    progress: Progress | None = None,
+    progress: ProgressRequest = None,
 ) -> xr.Dataset:
     """Stability chart of `single_degree`, over speed, damping, friction coefficient and the like.
 
