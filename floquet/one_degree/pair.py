@@ -26,6 +26,7 @@ from floquet.gear.multipliers import GearPairMultipliers, feedback_system, fitte
 from floquet.one_degree.closed_form import FrictionLoad, closed_form, force_by_torques, friction_arm
 from floquet.one_degree.linear_segments import LinearSegments
 from lumped.arguments import one_of, real_array, real_number
+from lumped.display.progress import shows_progress
 from lumped.labelling import provenance
 from lumped.model.periodic_system import LTVSystem
 from lumped.model.powers import power_attributes
