@@ -62,7 +62,7 @@ def test_deviations_are_compared_with_the_standard() -> None:
 
 def test_one_tooth_off_is_told_as_sidebands_and_residual(teeth_findings: TeethFindings) -> None:
     hertz = PAIR.geometry.mesh_frequency / 23
-    assert f"every {hertz:.3g} Hz" in teeth_findings.sentence
+    assert f"Sidebands at a spacing of {hertz:.3g} Hz" in teeth_findings.sentence
     assert "contact is kept" in teeth_findings.sentence
     assert teeth_findings.contact_lost == ()
     assert "% of it at order" in teeth_findings.sentence
