@@ -63,15 +63,16 @@ def test_deviations_are_compared_with_the_standard() -> None:
 def test_one_tooth_off_is_told_as_sidebands_and_residual(teeth_findings: TeethFindings) -> None:
     hertz = PAIR.geometry.mesh_frequency / 23
     assert f"Sidebands at a spacing of {hertz:.3g} Hz" in teeth_findings.sentence
-    assert "contact is kept" in teeth_findings.sentence
+    assert "Contact is kept" in teeth_findings.sentence
     assert teeth_findings.contact_lost == ()
-    assert "% of it at order" in teeth_findings.sentence
+    assert "% of the mesh tone, at order" in teeth_findings.sentence
     table = teeth_findings.indicators("pinion")["value"].sel(indicator="RMS_residual")
     quiet = indicators(teeth_findings.twin, "pinion")["value"].sel(indicator="RMS", record="pair")
     # White noise of 1 % of the average's root mean square is all that the twin's residual has.
     assert float(table.sel(record="healthy twin")) == pytest.approx(0.01 * float(quiet), rel=0.1)
     assert float(table.sel(record="pair")) > 3.0 * float(table.sel(record="healthy twin"))
-    assert f"{float(table[0] / table[1]):.2g} times the residual" in teeth_findings.sentence
+    times = f"Residual signal: {float(table[0] / table[1]):.2g} times that of perfect teeth."
+    assert times in teeth_findings.sentence
 
 
 @cache
@@ -201,7 +202,9 @@ def test_page_1_judges_the_teeth_as_given(results) -> None:
     assert load_row.note == f"like teeth {like['tooth_load']:.3g}"
     assert not any(math.isfinite(one.second) for one in first.numbers)  # the second program has like teeth
     hazard = next(one for one in first.numbers if one.key == "hazard")
-    assert ", with like teeth; the linear motion is proven stable from " in hazard.note
+    # The search and the proof are with like teeth.
+    assert "; the linear motion is proven stable from " in hazard.note
+    assert hazard.note.endswith(", with like teeth")
 
 
 def results_table(results):
