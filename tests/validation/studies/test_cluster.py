@@ -11,6 +11,7 @@ import subprocess
 import sys
 import threading
 import time
+from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -315,6 +316,8 @@ def test_ctrl_c_reaches_all_processes_of_a_terminal_and_only_the_sweep_says_so(m
         text=True,
         stderr=subprocess.PIPE,
         start_new_session=True,
+        # A job in the background of a shell, such as these tests, ignores Ctrl-C, and its processes with it.
+        preexec_fn=partial(signal.signal, signal.SIGINT, signal.SIG_DFL),
     )
     wait_until(begun, "no case was computed")
     os.killpg(run.pid, signal.SIGINT)
