@@ -56,12 +56,14 @@ class ChannelOrders(NamedTuple):
     noise : root of the expected square that white noise of the samples adds to all orders, in the unit of
         the channel
     gains : (m,) by which a filter of the recording multiplies our orders; None: no filter
+    offset : whether the values have another zero, so that the mean says nothing
     """
 
     channel: Channel
     orders: ComplexOrders
     noise: float = 0.0
     gains: ComplexArray | None = None
+    offset: bool = False
 
     def recorded(self, ours: ComplexOrders) -> ComplexOrders:
         """Return orders of ours through the filter of the recording."""

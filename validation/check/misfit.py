@@ -129,7 +129,12 @@ def misfit_of(
             ours=other.shifted(shift),
             scale=scale,
             static=static,
-            compares_mean=means and one.channel.kind.has_mean and not mean_is_removed(one, other, static),
+            compares_mean=(
+                means
+                and one.channel.kind.has_mean
+                and not one.offset
+                and not mean_is_removed(one, other, static)
+            ),
         )
         for one, other, scale, static in zip(theirs, ours, scales, statics, strict=True)
     ]

@@ -20,7 +20,7 @@ from lumped.errors import refuse
 from lumped.schema.bodies import bodies_of
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray, IntArray
-from validation.check.quantities import DISPLACEMENTS_MISSED, PAIR_LABELS, QUANTITIES, Quantity, quantity_of
+from validation.check.quantities import DISPLACEMENTS_TOO_MUCH, PAIR_LABELS, QUANTITIES, Quantity, quantity_of
 from validation.signals.complex_orders import ComplexOrders, orders_of_period
 
 
@@ -65,9 +65,10 @@ class MotionCurves:
             values = self._derivative(values, kind.derivative)
         if quantity.startswith("mesh_torque"):
             values = self._mesh_torque(kind, values)
-        if quantity in DISPLACEMENTS_MISSED:
-            apart = self.motion["x_p"].to_numpy() - self.motion["x_g"].to_numpy()
-            values = values - DISPLACEMENTS_MISSED[quantity] * apart
+        if quantity in DISPLACEMENTS_TOO_MUCH:
+            share = DISPLACEMENTS_TOO_MUCH[quantity]
+            values = values + share.pinion * self.motion["x_p"].to_numpy()
+            values = values + share.gear * self.motion["x_g"].to_numpy()
         return values
 
     def mean_cycle(self) -> MotionCurves:

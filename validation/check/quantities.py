@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 
 @dataclass(frozen=True)
@@ -97,10 +98,35 @@ MISTAKEN_ERRORS = {
             "transmission error with the displacements reversed",
             "dte",
         ),
+        Quantity("dte without the gear's", "m", "transmission error without the gear's displacement", "dte"),
+        Quantity(
+            "dte without the pinion's", "m", "transmission error without the pinion's displacement", "dte"
+        ),
+        Quantity("dte with a sum", "m", "transmission error with the sum of the displacements", "dte"),
     )
 }
-#: Share of the displacements x_p - x_g that each of these transmission errors has too little.
-DISPLACEMENTS_MISSED = {"dte of the rotations": 1.0, "dte with reversed displacements": 2.0}
+
+
+class Displacements(NamedTuple):
+    """Shares of x_p and x_g in a transmission error.
+
+    Attributes
+    ----------
+    pinion, gear : factors on x_p and x_g; 1 and -1 in the true one
+    """
+
+    pinion: float
+    gear: float
+
+
+#: Shares of the displacements that each of these transmission errors has too much.
+DISPLACEMENTS_TOO_MUCH = {
+    "dte of the rotations": Displacements(-1.0, 1.0),
+    "dte with reversed displacements": Displacements(-2.0, 2.0),
+    "dte without the gear's": Displacements(0.0, 1.0),
+    "dte without the pinion's": Displacements(-1.0, 0.0),
+    "dte with a sum": Displacements(0.0, 2.0),
+}
 
 
 def quantity_of(name: str) -> Quantity:

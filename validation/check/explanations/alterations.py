@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from validation.check.explanations.cause import Cause, Choice, Kind, Variant
-from validation.check.explanations.physics import Friction, reversal_of
+from validation.check.explanations.physics import Arms, Friction, reversal_of
 from validation.check.problem import Problem
 
 #: Trial amplitudes of a profile error, in steps of so many micrometres.
@@ -20,6 +20,9 @@ _MICROMETRES = 10.0
 _PRESCRIBED = {"mesh.contact": "prescribed", "mesh.relief": "ignored"}
 #: Places closer than this share of the base pitch are one.
 _APART = 5e-3
+#: Trial slopes and curvatures of a stiffness over its path, and trial lags [mesh cycles].
+_SHAPE = (-0.5, -0.2, 0.2, 0.5)
+_LAG = (-0.3, -0.1, 0.1, 0.3)
 
 
 def _altered(label: float | str, words: str, **changes: Any) -> Choice:
@@ -131,6 +134,70 @@ def _mesh_force_sign(problem: Problem, variant: Variant) -> list[Choice]:
     return [_altered(-1.0, words, mesh_force_gear=-1.0)]
 
 
+def _approach(problem: Problem, variant: Variant) -> list[Choice]:
+    """Displacements of the gears that the approach of the teeth leaves out, or has with the wrong sign."""
+    if variant.pair.shafts is not None or variant.physics.bearings != "elastic":
+        return []
+    return [
+        _altered(
+            "rotations alone",
+            "an approach of the teeth by the rotations alone, without the displacements of the gears",
+            approach_pinion=0.0,
+            approach_gear=0.0,
+        ),
+        _altered(
+            "without the pinion",
+            "an approach of the teeth without the displacement of the pinion",
+            approach_pinion=0.0,
+        ),
+        _altered(
+            "without the gear",
+            "an approach of the teeth without the displacement of the gear",
+            approach_gear=0.0,
+        ),
+        _altered(
+            "sign of the pinion",
+            "an approach of the teeth with the displacement of the pinion of the wrong sign",
+            approach_pinion=-1.0,
+        ),
+        _altered(
+            "sign of the gear",
+            "an approach of the teeth with the displacement of the gear of the wrong sign",
+            approach_gear=-1.0,
+        ),
+    ]
+
+
+def _arms(problem: Problem, variant: Variant) -> list[Choice]:
+    """Other lever arms of the friction moments."""
+    if not _has_friction(variant) or variant.pair.shafts is not None or variant.physics.arms:
+        return []
+    texts: dict[Arms, str] = {
+        "from A": "lever arms of friction that count from the start of contact, not from the line's tangent "
+        "point",
+        "of the other gear": "lever arms of friction of pinion and gear exchanged",
+        "at the pitch point": "lever arms of friction that stay those at the pitch point",
+        "pitch radii": "pitch radii as lever arms of friction",
+    }
+    return [_altered(arms, words, arms=arms) for arms, words in texts.items()]
+
+
+def _static_error(problem: Problem, variant: Variant) -> list[Choice]:
+    """The static deflection of the mesh as a second excitation."""
+    if variant.pair.mesh.contact != "prescribed" or variant.pair.healthy is not variant.pair:
+        return []
+    words = "the static transmission error as an excitation beside the varying stiffness that makes it"
+    return [
+        _altered("second excitation", words, static_error=1.0),
+        _altered("second excitation, wrong sign", f"{words}, with the wrong sign", static_error=-1.0),
+    ]
+
+
+def _prescribed(field: str) -> Callable[[Variant, float], Variant]:
+    """Change of a variant by a free parameter of the stiffness, with prescribed contact."""
+    return lambda variant, value: variant.with_inputs(_PRESCRIBED).with_physics(**{field: value})
+
+
 def _dampers(problem: Problem, variant: Variant) -> list[Choice]:
     if variant.pair.mesh.damping_ratio == 0.0:
         return []
@@ -199,7 +266,10 @@ def _radius(problem: Problem, variant: Variant) -> list[Choice]:
         return []
     angle = variant.pair.geometry.operating_pressure_angle
     words = "pitch radii in place of base radii as lever arms"
-    return [_altered("pitch radius", words, radius=1.0 / math.cos(angle))]
+    return [
+        _altered("pitch radius", words, radius=1.0 / math.cos(angle)),
+        _altered("diameter", "diameters in place of radii as lever arms", radius=2.0),
+    ]
 
 
 def _bearings(problem: Problem, variant: Variant) -> list[Choice]:
@@ -315,7 +385,55 @@ def _causes() -> Iterator[Cause]:
                 variant.pair.mesh.contact == "prescribed" and variant.pair.healthy is variant.pair
             ),
         )
-    yield altered("pitch radius", "pitch radii in place of base radii", "1/cos(alpha)", _radius)
+    yield altered(
+        "pitch radius", "pitch radii or diameters in place of base radii", "1/cos(alpha), 2", _radius
+    )
+    yield altered(
+        "approach of the teeth",
+        "displacements of the gears that the approach of the teeth leaves out or turns",
+        "rotations alone; without one gear; sign of one gear",
+        _approach,
+    )
+    yield altered(
+        "lever arms of friction",
+        "other lever arms of the friction moments",
+        "from A, of the other gear, at the pitch point, pitch radii",
+        _arms,
+    )
+    yield altered(
+        "static error as an excitation",
+        "the static transmission error beside the varying stiffness",
+        "right and wrong sign",
+        _static_error,
+    )
+    for field, meaning, grid in (
+        ("slope", "a further slope of the stiffness of a tooth pair over its path, from A to D", _SHAPE),
+        ("curvature", "a further curvature of the stiffness of a tooth pair over its path", _SHAPE),
+        ("lag", "the stiffness late against contact and friction, in mesh cycles", _LAG),
+    ):
+        yield Cause(
+            name=f"{field} of the stiffness",
+            kind=Kind.PHYSICS,
+            meaning=meaning,
+            span=f"about {grid[0]:g} to {grid[-1]:g}",
+            grid=grid,
+            neutral=0.0,
+            change=_prescribed(field),
+            words=f"{meaning}: {{value}}",
+            applies=_may_vary,
+        )
+    yield Cause(
+        name="damping of the masses",
+        kind=Kind.PHYSICS,
+        meaning="dampers of all coordinates in proportion to masses and inertias",
+        span="damping ratio at the mesh frequency, about 0.01 to 0.3",
+        grid=(0.01, 0.05, 0.3),
+        neutral=0.0,
+        change=lambda variant, value: variant.with_physics(mass_damping=value),
+        words="dampers in proportion to masses and inertias, {value} of the critical ones at the mesh "
+        "frequency",
+        applies=lambda problem, variant: variant.pair.shafts is None,
+    )
     yield altered("supports", "rigid bearings, or a torsional model", "rigid, torsional", _bearings)
     yield altered("shafts left out", "springs in place of shafts", "springs", _shafts)
 

@@ -21,7 +21,8 @@ from validation.check.problem import Problem
 
 #: Trial factors: of a stiffness, of a load or a mass, of a damper, of a bearing.
 _NEAR = (0.4, 0.63, 0.8, 1.25, 1.6, 2.5)
-_MASS = (0.35, 0.6, 0.8, 1.25, 1.7, 2.8, 8.0, 25.0)
+_LOAD = (0.15, *_NEAR, 6.0)
+_MASS = (0.12, 0.35, 0.6, 0.8, 1.25, 1.7, 2.8, 8.0, 25.0)
 _DAMPER = (0.1, 0.4, 2.5, 10.0)
 _BEARING = (0.01, 0.1, 0.4, 2.5, 10.0, 100.0)
 _LENGTH = (0.8, 0.87, 0.94, 1.06, 1.13, 1.25)
@@ -103,6 +104,10 @@ def _mass(pair: GearPair, value: float, gears: Sequence[str] = _GEARS) -> Fields
 
 def _density(pair: GearPair, value: float) -> Fields:
     return {**_inertia(pair, value), **_mass(pair, value)}
+
+
+def _density_of(pair: GearPair, value: float, gear: str) -> Fields:
+    return {**_inertia(pair, value, (gear,)), **_mass(pair, value, (gear,))}
 
 
 def _width(pair: GearPair, value: float) -> Fields:
@@ -208,7 +213,7 @@ def _free() -> Iterator[Cause]:
             applies=applies,
         )
 
-    yield free("mesh stiffness", "the stiffness of the tooth pairs", _NEAR, _stiffness)
+    yield free("mesh stiffness", "the stiffness of the tooth pairs", _LOAD, _stiffness)
     yield free(
         "mesh damping",
         "the damping of the mesh",
@@ -216,7 +221,7 @@ def _free() -> Iterator[Cause]:
         _mesh_damping,
         lambda problem, variant: variant.pair.mesh.damping_ratio > 0.0,
     )
-    yield free("torque", "the torque", _NEAR, _torque)
+    yield free("torque", "the torque", _LOAD, _torque)
     yield free(
         "speed", "the speed", _NEAR, _speed, lambda problem, variant: problem.curves.abscissa != "time"
     )
@@ -237,12 +242,24 @@ def _free() -> Iterator[Cause]:
             lambda pair, value, gear=gear: _mass(pair, value, (gear,)),  # type: ignore[misc]
             _on_springs,
         )
+        yield free(
+            f"density of the {gear}",
+            f"the density of the {gear}, so its mass and inertia,",
+            _MASS,
+            lambda pair, value, gear=gear: _density_of(pair, value, gear),  # type: ignore[misc]
+            _on_springs,
+        )
     groups = {
         "": (_GEARS, _LINES, "of both gears"),
         " of the pinion": (("pinion",), _LINES, "of the pinion"),
         " of the gear": (("gear",), _LINES, "of the gear"),
         " along the line of action": (_GEARS, ("loa",), "along the line of action"),
         " across the line of action": (_GEARS, ("oloa",), "across the line of action"),
+        **{
+            f" of the {gear}, {words}": ((gear,), (line,), f"of the {gear} {words} the line of action")
+            for gear in _GEARS
+            for line, words in (("loa", "along"), ("oloa", "across"))
+        },
     }
     for ending, (gears, lines, words) in groups.items():
         for key, noun, grid in (("stiffness", "stiffness", _BEARING), ("damping_ratio", "damping", _DAMPER)):

@@ -50,7 +50,13 @@ UNIT_FACTORS = (
     UnitFactor("turns for radians", 1.0 / (2.0 * math.pi), ("rad",)),
     UnitFactor("radians for turns", 2.0 * math.pi, ("rad",)),
     UnitFactor("rpm for rad/s", 30.0 / math.pi, ("rad/s",)),
+    UnitFactor("arc minutes for radians", 180.0 * 60.0 / math.pi, ("rad",)),
+    UnitFactor("arc seconds for radians", 180.0 * 3600.0 / math.pi, ("rad",)),
     UnitFactor("inches for metres", 1.0 / 0.0254, ("m",)),
+    UnitFactor("thousandths of an inch for metres", 1e3 / 0.0254, ("m",)),
+    UnitFactor("millionths of an inch for metres", 1e6 / 0.0254, ("m",)),
+    UnitFactor("multiples of g for m/s^2", 1.0 / 9.80665, ("m/s^2",)),
+    UnitFactor("pound-force inches for N m", 1.0 / 0.1129848, ("N*m",)),
     UnitFactor("kilogram-force for newtons", 1.0 / 9.80665, ("N",)),
     UnitFactor("pounds for newtons", 1.0 / 4.4482216, ("N",)),
     UnitFactor("twice the value: diameter for radius, or peak to peak for amplitude", 2.0),
@@ -74,6 +80,9 @@ _WINDOW = (0.05, 0.1, 0.2, 0.35, 0.5)
 #: Trial angles of axes over a right angle [rad].
 _TURNED = (-1.0, -0.78, -0.5, -0.22, 0.22, 0.5, 0.78, 1.0)
 _QUARTER = 0.5 * math.pi
+_HIGH_PASS = (0.1, 0.3, 1.0, 3.0)
+#: Means that differ by this share of the static value.
+_OTHER_MEAN = 0.02
 _DELAY = (-0.15, -0.05, 0.05, 0.15)
 
 
@@ -245,6 +254,9 @@ def _mistaken(problem: Problem, kind: Quantity) -> Iterator[tuple[str, str, floa
             1.0 / cosine,
         )
         yield "the displacements of the bearings with the wrong sign", "dte with reversed displacements", 1.0
+        yield "no displacement of the gear", "dte without the gear's", 1.0
+        yield "no displacement of the pinion", "dte without the pinion's", 1.0
+        yield "the sum of both displacements in place of their difference", "dte with a sum", 1.0
     stem = name.removesuffix("_ddot").removesuffix("_dot")
     others = [stem, f"{stem}_dot", f"{stem}_ddot"]
     nouns = ("the motion itself", "the rate", "the acceleration")
@@ -282,6 +294,26 @@ def _most_orders(problem: Problem, variant: Variant) -> list[Choice]:
             words = f"the first {most} mesh orders alone" if most > 1 else "the first mesh order alone"
             return [_reading(most, words, partial(replace, most_orders=most))]
     return []
+
+
+def _offsets(problem: Problem, variant: Variant) -> list[Choice]:
+    """Channels, or families of them, with another zero; only where their means differ."""
+    differing = {
+        row.channel.channel.name
+        for row in problem.misfit.channels
+        if row.compares_mean and abs(row.channel.orders.mean - row.ours.mean) > _OTHER_MEAN * row.static
+    } - {*variant.reading.offsets}
+
+    def without_means(names: Sequence[str]) -> Callable[[Reading], Reading]:
+        return lambda reading: reading.with_offsets(names)
+
+    return [
+        _reading(words, f"another zero of {words}: the means differ", without_means(names))._replace(
+            vague=True
+        )
+        for words, names in _groups(problem).items()
+        if differing & {*names}
+    ]
 
 
 def _reversed(problem: Problem, variant: Variant) -> list[Choice]:
@@ -388,6 +420,9 @@ def _causes() -> Iterator[Cause]:
         "displacement, rate, force; dte of the rotations alone",
         _other_quantities,
     )
+    yield read(
+        "zero of a channel", "a channel, or a family of channels, with another zero", "offset", _offsets
+    )
     yield read("time reversed", "time that runs backwards", "reversed", _reversed)
     yield read("wrong phase", "another phase than the stated one", "searched", _phase)
     yield read("not settled", "free vibrations that still decay", "not settled", _not_settled)
@@ -402,6 +437,27 @@ def _causes() -> Iterator[Cause]:
         change=lambda variant, value: variant.with_reading(replace(variant.reading, time_constant=value)),
         words="a low-pass filter of first order at {value} mesh orders",
         shown=lambda value: 1.0 / max(value, 1e-300),
+    )
+    yield Cause(
+        name="low-pass filter both ways",
+        kind=Kind.READING,
+        meaning="all channels through a low-pass filter that runs forward and backward, without delay",
+        span="cutoff at 0.5 to 8 mesh orders and above",
+        grid=_TIME_CONSTANT,
+        neutral=0.0,
+        change=lambda variant, value: variant.with_reading(replace(variant.reading, both_ways=value)),
+        words="a low-pass filter of second order, forward and backward, at {value} mesh orders",
+        shown=lambda value: 1.0 / max(value, 1e-300),
+    )
+    yield Cause(
+        name="high-pass filter",
+        kind=Kind.READING,
+        meaning="all channels through a high-pass filter of first order",
+        span="cutoff at 0.1 to 3 mesh orders",
+        grid=_HIGH_PASS,
+        neutral=0.0,
+        change=lambda variant, value: variant.with_reading(replace(variant.reading, high_pass=value)),
+        words="a high-pass filter of first order at {value} mesh orders",
     )
     yield read(
         "few mesh orders", "curves of the first mesh orders alone", "where the curves end", _most_orders

@@ -12,14 +12,13 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Literal, NamedTuple
+from typing import Literal
 
 import numpy as np
 import xarray as xr
 
 from lumped.errors import NumericalError
 from lumped.labelling import provenance
-from lumped.mesh.damper import damping_coefficient
 from lumped.mesh.records import Records
 from lumped.model.equations import THETA_G, THETA_P, X_G, X_P, Y_G, Y_P, Structure, structure
 from lumped.model.mesh_cycle import MeshCycle
@@ -32,9 +31,27 @@ from lumped.model.unilateral_motion import Shooting, motion_of_shooting
 from lumped.path_function import PathFunction
 from lumped.quasi_static.contacts import contact_of
 from lumped.quasi_static.elements import MeshElements, mean_of_pairs
-from lumped.schema.bodies import bodies_of
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
+from validation.check.explanations.pair_laws import (
+    SAME,
+    TOLERANCE,
+    Damper,
+    Stiffness,
+    damper_factor,
+    fitted,
+    marks_of,
+    separate,
+    static_error,
+    total_of_pairs,
+    wave_error,
+    with_error,
+    with_lag,
+    with_shape,
+    with_smoothing,
+    with_stiffness,
+    with_variation,
+)
 from validation.check.motion_curves import MotionCurves
 from validation.check.reference import lumped_motion
 
@@ -44,30 +61,7 @@ _SAMPLES = 512
 _PULLS = -1e-6
 #: Altered equations whose linear motion grows by more than this factor in a mesh cycle have no motion.
 _GROWS = 1.2
-#: Fit error of an altered law over its largest value.
-_TOLERANCE = 1e-7
-#: Places in a mesh cycle at which a stiffness is smoothed, and the harmonics of a smoothed stiffness.
-_COURSE = 2048
-_HARMONICS = 30
-#: Least stiffness of the whole mesh over its mean, where a change would make it negative.
-_LEAST_STIFFNESS = 0.02
-#: Positions closer than this share of the base pitch are one.
-_SAME = 1e-9
 
-Damper = Literal["of each pair", "of the whole mesh", "proportional", "constant"]
-Stiffness = Literal[
-    "",
-    "reversed",
-    "constant",
-    "single pair",
-    "double pair",
-    "shared evenly",
-    "whole mesh for each pair",
-    "levels exchanged",
-    "first harmonic",
-    "three harmonics",
-    "two levels",
-]
 Friction = Literal[
     "",
     "without reversal",
@@ -77,6 +71,7 @@ Friction = Literal[
     "middle of the path",
 ]
 Bearings = Literal["elastic", "rigid", "left out"]
+Arms = Literal["", "from A", "of the other gear", "at the pitch point", "pitch radii"]
 
 
 @dataclass(frozen=True)
@@ -90,13 +85,20 @@ class Physics:
     moment_pinion, moment_gear : factors on the moments of friction about the axes
     force_pinion, force_gear : factors on the friction forces on the translations
     mesh_force_gear : factor on the mesh force along the line of action of the gear
+    approach_pinion, approach_gear : factors on the displacements of the gears in the approach of the teeth
+    arms : lever arms of the friction moments
+    mass_damping : dampers of all coordinates in proportion to their masses, as a damping ratio at the mesh
+        frequency
     course : course of the friction over the path of contact
     radius : factor on the base radii as lever arms of the mesh force and in the transmission error
     damper : law of the dampers of the teeth
     stiffness : change of the stiffness of the tooth pairs over the mesh cycle
+    slope, curvature : further slope and curvature of the stiffness of a tooth pair over its path
+    lag : mesh cycles by which the stiffness of the whole mesh comes late
     variation : factor on the variation of the stiffness of the whole mesh about its mean
     smoothing : window of a moving average of the stiffness of the whole mesh [mesh cycles]
     error_cosine, error_sine : amplitudes of a profile error of all teeth at the mesh frequency, from A on [m]
+    static_error : factor with which the static deflection of the mesh is an error of all teeth
     bearings : "rigid": without translations, bearings carry the mesh force; "left out": a torsional model
     """
 
@@ -107,38 +109,59 @@ class Physics:
     force_pinion: float = 1.0
     force_gear: float = 1.0
     mesh_force_gear: float = 1.0
+    approach_pinion: float = 1.0
+    approach_gear: float = 1.0
+    arms: Arms = ""
+    mass_damping: float = 0.0
     course: Friction = ""
     radius: float = 1.0
     damper: Damper = "of each pair"
     stiffness: Stiffness = ""
+    slope: float = 0.0
+    curvature: float = 0.0
+    lag: float = 0.0
     variation: float = 1.0
     smoothing: float = 0.0
     error_cosine: float = 0.0
     error_sine: float = 0.0
+    static_error: float = 0.0
     bearings: Bearings = "elastic"
 
     @property
     def of_stiffness(self) -> bool:
         """Whether the stiffness over the mesh cycle is altered."""
-        return bool(self.stiffness) or self.variation != 1.0 or self.smoothing > 0.0
+        return self._alters(_OF_STIFFNESS)
+
+    @property
+    def of_error(self) -> bool:
+        """Whether the error of the teeth is altered."""
+        return self._alters(_OF_ERROR)
 
     @property
     def of_equations(self) -> bool:
         """Whether the constant data of the equations of motion are altered."""
-        of_laws = {
-            "pulling": False,
-            "friction": 1.0,
-            "course": "",
-            "damper": "of each pair",
-            "stiffness": "",
-            "variation": 1.0,
-            "smoothing": 0.0,
-            "error_cosine": 0.0,
-            "error_sine": 0.0,
-        }
-        return replace(self, **of_laws) != Physics()  # type: ignore[arg-type]
+        return self._alters(_OF_EQUATIONS)
+
+    def _alters(self, names: tuple[str, ...]) -> bool:
+        return any(getattr(self, name) != getattr(UNALTERED, name) for name in names)
 
 
+#: Fields that alter the stiffness of the teeth, their error, and the constant data of the equations.
+_OF_STIFFNESS = ("stiffness", "slope", "curvature", "lag", "variation", "smoothing")
+_OF_ERROR = ("error_cosine", "error_sine", "static_error")
+_OF_EQUATIONS = (
+    "moment_pinion",
+    "moment_gear",
+    "force_pinion",
+    "force_gear",
+    "mesh_force_gear",
+    "approach_pinion",
+    "approach_gear",
+    "arms",
+    "mass_damping",
+    "radius",
+    "bearings",
+)
 #: The model without alteration.
 UNALTERED = Physics()
 
@@ -165,8 +188,8 @@ def motion_of(
         return lumped_motion(pair, recurrence)
     if pair.healthy is not pair or (physics.of_equations and pair.shafts is not None):
         raise NumericalError("This alteration needs like teeth; of the equations of motion, springs too.")
-    if (physics.error_cosine or physics.error_sine) and not prescribed:
-        raise NumericalError("A profile error at the mesh frequency needs prescribed contact.")
+    if physics.of_error and not prescribed:
+        raise NumericalError("A further error of all teeth needs prescribed contact.")
     if physics.of_stiffness and not prescribed:
         raise NumericalError("A stiffness over the mesh cycle needs prescribed contact.")
     again = recurrence or pair.pinion.teeth
@@ -193,20 +216,23 @@ def motion_of(
 def altered_system(pair: GearPair, physics: Physics) -> LTVSystem:
     """Return the "full" system of a pair with alterations of the model."""
     cycle = MeshCycle(pair.geometry, altered_elements(pair, physics))
-    equations = altered_equations(structure(pair), physics) if physics.of_equations else None
+    equations = altered_equations(pair, physics) if physics.of_equations else None
     supports = supports_of(pair, None)
     return LTVSystem.of(pair, "full", cycle=cycle, supports=supports, equations=equations)
 
 
-def altered_equations(s: Structure, physics: Physics) -> Structure:
+def altered_equations(pair: GearPair, physics: Physics) -> Structure:
     """Return the constant data of the equations of motion with the factors of the alterations."""
+    s = structure(pair)
     normal = s.normal.copy()
     deflection = s.deflection.copy()
-    arm = s.friction_arm.copy()
+    arm = friction_arms(pair, physics.arms)
     rotations = [THETA_P, THETA_G]
     translations = [X_P, X_G, Y_P, Y_G]
     normal[rotations] *= physics.radius
     deflection[rotations] *= physics.radius
+    deflection[X_P] *= physics.approach_pinion
+    deflection[X_G] *= physics.approach_gear
     normal[X_G] *= physics.mesh_force_gear
     arm[THETA_P] *= physics.moment_pinion
     arm[THETA_G] *= physics.moment_gear
@@ -216,23 +242,59 @@ def altered_equations(s: Structure, physics: Physics) -> Structure:
     if physics.bearings != "elastic":
         for forces in (normal, deflection, arm, apart):
             forces[translations] = 0.0
-    return replace(s, normal=normal, deflection=deflection, friction_arm=arm, apart=apart)
+    damping = s.damping + damping_of_masses(pair, physics.mass_damping)
+    return replace(s, damping=damping, normal=normal, deflection=deflection, friction_arm=arm, apart=apart)
+
+
+def friction_arms(pair: GearPair, arms: Arms) -> FloatArray:
+    """Return generalised forces (6, 2) per unit friction force, a[:, 0] + a[:, 1] xi, with other lever arms.
+
+    The true lever arms are X_p = xi on the pinion and X_g = L_XY - xi on the gear.
+    """
+    g = pair.geometry
+    arm = structure(pair).friction_arm.copy()
+    if arms == "from A":
+        arm[THETA_P] = g.L_XA, -1.0
+        arm[THETA_G] = g.L_XY + g.L_XA, -1.0
+    elif arms == "of the other gear":
+        arm[THETA_P] = -g.L_XY, 1.0
+        arm[THETA_G] = 0.0, 1.0
+    elif arms == "at the pitch point":
+        arm[THETA_P] = -g.L_XP, 0.0
+        arm[THETA_G] = g.L_XY - g.L_XP, 0.0
+    elif arms == "pitch radii":
+        cosine = math.cos(g.operating_pressure_angle)
+        arm[THETA_P] = -g.base_radius_pinion / cosine, 0.0
+        arm[THETA_G] = g.base_radius_gear / cosine, 0.0
+    return arm
+
+
+def damping_of_masses(pair: GearPair, ratio: float) -> FloatArray:
+    """Return dampers (6,) in proportion to masses and inertias m: 2 ratio omega m at the mesh frequency."""
+    frequency = 2.0 * math.pi / pair.geometry.mesh_period
+    return np.asarray(2.0 * ratio * frequency * structure(pair).mass)
 
 
 def altered_elements(pair: GearPair, physics: Physics) -> MeshElements:
     """Return the element laws of a tooth pair with alterations of stiffness, dampers and friction."""
     elements = contact_of(pair).elements(pair)
     if physics.stiffness:
-        elements = _with_stiffness(pair, elements, physics.stiffness)
+        elements = with_stiffness(pair, elements, physics.stiffness)
+    if physics.slope or physics.curvature:
+        elements = with_shape(pair, elements, physics.slope, physics.curvature)
     if physics.variation != 1.0:
-        elements = _with_variation(pair, elements, physics.variation)
+        elements = with_variation(pair, elements, physics.variation)
     if physics.smoothing > 0.0:
-        elements = _with_smoothing(pair, elements, physics.smoothing)
+        elements = with_smoothing(pair, elements, physics.smoothing)
+    if physics.lag:
+        elements = with_lag(pair, elements, physics.lag)
     if physics.error_cosine or physics.error_sine:
-        elements = _with_error(pair, elements, physics)
+        elements = with_error(pair, elements, wave_error(pair, physics.error_cosine, physics.error_sine))
+    if physics.static_error:
+        elements = with_error(pair, elements, static_error(pair, elements.stiffness, physics.static_error))
     if physics.damper != "of each pair":
         factor = damper_factor(pair, elements, physics.damper)
-        damping = _fitted(lambda xi: elements.damping(xi) * factor(xi), pair, elements)
+        damping = fitted(lambda xi: elements.damping(xi) * factor(xi), pair, elements)
         elements = replace(elements, damping=damping)
     friction = altered_friction(pair, elements.friction, elements.stiffness, physics)
     return replace(elements, friction=friction)
@@ -260,9 +322,9 @@ def _friction_over_path(
     low, high = friction.interval
     pitch = pair.geometry.base_pitch
     leads = high - pitch
-    total = _total(pair, stiffness)
+    total = total_of_pairs(pair, stiffness)
     reversal = reversal_of(pair, course, low, high)
-    behind = float(np.sign(friction(np.array([high - _SAME * pitch]))[0]))
+    behind = float(np.sign(friction(np.array([high - SAME * pitch]))[0]))
 
     def changed(xi: FloatArray) -> FloatArray:
         if course == "without reversal":
@@ -277,13 +339,12 @@ def _friction_over_path(
 
     pair_stiffness_scale = mean_of_pairs(stiffness, pitch)
     laws = (friction, stiffness) if course.startswith("total") else (friction,)
-    marks = _marks(pair, laws, low, high)
+    marks = marks_of(pair, laws, low, high)
     marks = np.append(marks, [leads, pair.geometry.L_XP, *([] if reversal is None else [reversal])])
-    marks = np.unique(marks[(marks > low + _SAME * pitch) & (marks < high - _SAME * pitch)])
-    marks = marks[np.diff(marks, prepend=-np.inf) > _SAME * pitch]
+    marks = separate(marks, pair, low, high)
     size = float(np.abs(changed(np.linspace(low, high, 401)[1:-1])).max())
     breaks = np.concatenate([[low], marks, [high]])
-    return PathFunction.fit(changed, breaks, marks, tolerance=_TOLERANCE * max(size, 1e-300))
+    return PathFunction.fit(changed, breaks, marks, tolerance=TOLERANCE * max(size, 1e-300))
 
 
 def reversal_of(pair: GearPair, course: Friction, low: float, high: float) -> float | None:
@@ -315,205 +376,6 @@ class AlteredLaws(ToothLaws):
         if self.factor is not None:
             laws["damping"] *= self.factor(xi)
         return laws
-
-
-def damper_factor(pair: GearPair, elements: MeshElements, law: Damper) -> Callable[[FloatArray], FloatArray]:
-    """Return the factor over xi from the damper of each pair, 2 zeta sqrt(k_i m_e), to another law.
-
-    With K the sum of k_i over all pairs, each pair takes its part k_i/K of the damper of the mesh:
-    2 zeta sqrt(K m_e), proportional 2 zeta K sqrt(m_e/mean K), constant 2 zeta sqrt(mean K m_e).
-    """
-    total = _total(pair, elements.stiffness)
-    mean = mean_of_pairs(elements.stiffness, pair.geometry.base_pitch)
-    mass = bodies_of(pair).effective_mass
-
-    def factor(xi: FloatArray) -> FloatArray:
-        whole = np.maximum(total(xi), 1e-6 * mean)
-        stiffness = np.maximum(elements.stiffness(xi), 1e-6 * mean)
-        under_root = {"of the whole mesh": whole, "proportional": whole**2 / mean}.get(law, mean)
-        of_mesh = damping_coefficient(1.0, np.asarray(under_root + 0.0 * whole), mass)
-        of_pair = damping_coefficient(1.0, stiffness, mass)
-        return np.asarray(of_mesh * stiffness / whole / of_pair, dtype=np.float64)
-
-    return factor
-
-
-def _total(pair: GearPair, law: PathFunction, extra: float = 0.0) -> Callable[[FloatArray], FloatArray]:
-    """Return the sum of a law over all pairs, as a function of the position xi of one of them."""
-    low, high = law.interval
-    pitch = pair.geometry.base_pitch
-    reach = int(np.ceil((high - low + extra) / pitch))
-    shifts = np.arange(-reach, reach + 1) * pitch
-    return lambda xi: np.asarray(law(np.add.outer(xi, shifts)).sum(axis=-1), dtype=np.float64)
-
-
-def _marks(pair: GearPair, laws: tuple[PathFunction, ...], low: float, high: float) -> FloatArray:
-    """Positions strictly between low and high at which this pair, or another one, passes a break of a law."""
-    pitch = pair.geometry.base_pitch
-    reach = int(np.ceil((high - low) / pitch)) + 1
-    places = np.concatenate([law.breaks for law in laws] + [[low, high]])
-    copies = np.sort(np.add.outer(places, np.arange(-reach, reach + 1) * pitch).ravel())
-    copies = copies[(copies > low + _SAME * pitch) & (copies < high - _SAME * pitch)]
-    return np.asarray(copies[np.diff(copies, prepend=-np.inf) > _SAME * pitch], dtype=np.float64)
-
-
-def _fitted(
-    function: Callable[[FloatArray], FloatArray],
-    pair: GearPair,
-    elements: MeshElements,
-    interval: tuple[float, float] | None = None,
-) -> PathFunction:
-    """Fit a law over xi that depends on the pair and its neighbours."""
-    low, high = elements.stiffness.interval if interval is None else interval
-    marks = _marks(pair, (elements.stiffness,), low, high)
-    size = float(np.abs(function(np.linspace(low, high, 401)[1:-1])).max())
-    breaks = np.concatenate([[low], marks, [high]])
-    return PathFunction.fit(function, breaks, marks, tolerance=_TOLERANCE * max(size, 1e-300))
-
-
-def _with_stiffness(pair: GearPair, elements: MeshElements, change: Stiffness) -> MeshElements:
-    """Element laws with another stiffness over the mesh cycle; the dampers follow the new stiffness."""
-    stiffness = elements.stiffness
-    low, high = interval = stiffness.interval
-    pitch = pair.geometry.base_pitch
-    mean = mean_of_pairs(stiffness, pitch)
-    total = _total(pair, stiffness)
-    middle = 0.5 * (low + high)
-    if change == "reversed":
-        changed = _fitted(lambda xi: stiffness(low + high - xi), pair, elements)
-    elif change == "constant":
-        changed = _fitted(lambda xi: mean * stiffness(xi) / total(xi), pair, elements)
-    elif change == "shared evenly":
-        pairs = _total(pair, PathFunction.constant(1.0, low, high))
-        changed = _fitted(lambda xi: total(xi) / np.maximum(pairs(xi), 1.0), pair, elements)
-    elif change == "whole mesh for each pair":
-        changed = _fitted(total, pair, elements)
-    elif change == "levels exchanged":
-        places = low + (np.arange(_COURSE) + 0.5) / _COURSE * pitch
-        both = float(total(places).max() + total(places).min())
-        changed = _fitted(lambda xi: stiffness(xi) * (both - total(xi)) / total(xi), pair, elements)
-    elif change in ("first harmonic", "three harmonics", "two levels"):
-        course = _smoother(pair, stiffness, change)
-        changed = _fitted(lambda xi: stiffness(xi) * course(xi) / total(xi), pair, elements)
-    else:
-        count = 1.0 if change == "single pair" else 2.0
-        one_pair = float(stiffness(np.array([middle]))[0])
-        interval = (middle - 0.5 * count * pitch, middle + 0.5 * count * pitch)
-        changed = PathFunction.constant(one_pair, *interval)
-    return _with_law(pair, elements, changed, interval)
-
-
-def _with_error(pair: GearPair, elements: MeshElements, physics: Physics) -> MeshElements:
-    """Element laws with a further error of all teeth: cosine and sine at the mesh frequency, from A on."""
-    g = pair.geometry
-    low, high = elements.error.interval
-
-    def error(xi: FloatArray) -> FloatArray:
-        angle = 2.0 * np.pi * (xi - g.L_XA) / g.base_pitch
-        wave = physics.error_cosine * np.cos(angle) + physics.error_sine * np.sin(angle)
-        return np.asarray(elements.error(xi) + wave)
-
-    breaks = np.concatenate([[low], _marks(pair, (elements.error,), low, high), [high]])
-    size = float(np.abs(error(np.linspace(low, high, 401)[1:-1])).max())
-    fitted = PathFunction.fit(error, breaks, breaks[1:-1], tolerance=_TOLERANCE * max(size, 1e-300))
-    return replace(elements, error=fitted)
-
-
-def _with_variation(pair: GearPair, elements: MeshElements, factor: float) -> MeshElements:
-    """Element laws with another variation of the stiffness K of the whole mesh: k (mean + f (K - mean))/K."""
-    stiffness = elements.stiffness
-    mean = mean_of_pairs(stiffness, pair.geometry.base_pitch)
-    total = _total(pair, stiffness)
-
-    def changed(xi: FloatArray) -> FloatArray:
-        whole = total(xi)
-        varied = np.maximum(mean + factor * (whole - mean), _LEAST_STIFFNESS * mean)
-        return np.asarray(stiffness(xi) * varied / whole)
-
-    return _with_law(pair, elements, _fitted(changed, pair, elements), stiffness.interval)
-
-
-def _with_law(
-    pair: GearPair, elements: MeshElements, changed: PathFunction, interval: tuple[float, float]
-) -> MeshElements:
-    """Element laws with another stiffness of the tooth pair, which the dampers follow, on an interval."""
-    stiffness = elements.stiffness
-    mass = bodies_of(pair).effective_mass
-    ratio = pair.mesh.damping_ratio
-
-    def damping(xi: FloatArray) -> FloatArray:
-        return np.asarray(damping_coefficient(ratio, np.maximum(changed(xi), 0.0), mass), dtype=np.float64)
-
-    return replace(
-        elements,
-        stiffness=changed,
-        damping=_fitted(damping, pair, elements, interval) if ratio else changed.scaled(0.0),
-        error=PathFunction.constant(0.0, *interval) if interval != stiffness.interval else elements.error,
-    )
-
-
-def _smoother(
-    pair: GearPair, stiffness: PathFunction, change: Stiffness
-) -> Callable[[FloatArray], FloatArray]:
-    """Return the stiffness of the whole mesh over xi, with less detail than it has.
-
-    Its mean with one harmonic or three, or one value for each number of tooth pairs in contact.
-    """
-    low, high = stiffness.interval
-    course = _course_of(pair, stiffness)
-    places, values = course.places, course.values
-    if change == "two levels":
-        pairs = _total(pair, PathFunction.constant(1.0, low, high))
-        count = np.round(pairs(places))
-        levels = {float(number): float(values[count == number].mean()) for number in np.unique(count)}
-        numbers, means = np.array(sorted(levels)), np.array([levels[one] for one in sorted(levels)])
-        return lambda xi: np.asarray(np.interp(np.round(pairs(xi)), numbers, means), dtype=np.float64)
-    return _of_harmonics(course, np.ones(1 if change == "first harmonic" else 3))
-
-
-class _Course(NamedTuple):
-    """The stiffness of the whole mesh [N/m] at equal steps of a base pitch.
-
-    Attributes
-    ----------
-    places : (n,) positions xi [m]
-    values : (n,) stiffness
-    pitch : base pitch [m]
-    """
-
-    places: FloatArray
-    values: FloatArray
-    pitch: float
-
-
-def _course_of(pair: GearPair, stiffness: PathFunction) -> _Course:
-    """The stiffness of the whole mesh over a base pitch."""
-    pitch = pair.geometry.base_pitch
-    places = stiffness.interval[0] + (np.arange(_COURSE) + 0.5) / _COURSE * pitch
-    return _Course(places, _total(pair, stiffness)(places), pitch)
-
-
-def _of_harmonics(course: _Course, gains: FloatArray) -> Callable[[FloatArray], FloatArray]:
-    """The mean of a stiffness and its first harmonics times gains (m,), never below a least stiffness."""
-    orders = np.arange(1, gains.size + 1)
-    waves = np.fft.rfft(course.values)[1 : gains.size + 1] * (2.0 / _COURSE) * gains
-    mean = float(course.values.mean())
-
-    def stiffness(xi: FloatArray) -> FloatArray:
-        angle = 2.0 * np.pi * np.multiply.outer((xi - course.places[0]) / course.pitch, orders)
-        return np.asarray(np.maximum(mean + (np.exp(1j * angle) @ waves).real, _LEAST_STIFFNESS * mean))
-
-    return stiffness
-
-
-def _with_smoothing(pair: GearPair, elements: MeshElements, window: float) -> MeshElements:
-    """Element laws whose stiffness of the whole mesh is averaged over a window [mesh cycles]."""
-    stiffness = elements.stiffness
-    total = _total(pair, stiffness)
-    orders = np.arange(1, _HARMONICS + 1)
-    smooth = _of_harmonics(_course_of(pair, stiffness), np.sinc(window * orders))
-    changed = _fitted(lambda xi: stiffness(xi) * smooth(xi) / total(xi), pair, elements)
-    return _with_law(pair, elements, changed, stiffness.interval)
 
 
 def _linear_motion(system: LTVSystem, physics: Physics) -> xr.Dataset | None:

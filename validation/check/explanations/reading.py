@@ -38,7 +38,11 @@ class Reading:
     quantities : channel -> quantity that it holds in place of its own
     delays : channel -> delay against the other channels [mesh cycles]
     reversed : whether the time runs backwards
+    offsets : channels with another zero, whose means are not compared
     time_constant : of a low-pass filter of first order of all channels, 1 over the mesh order of its cutoff
+    both_ways : of a low-pass filter of second order that runs forward and backward, 1 over the mesh order of
+        its cutoff
+    high_pass : mesh order of the cutoff of a high-pass filter of first order of all channels
     window : of a moving average of all channels [mesh cycles]
     most_orders : largest mesh order that the curves have; 0: all of them
     turned_forces : angle [rad] by which the axes of the bearing forces are turned from the line of action
@@ -52,7 +56,10 @@ class Reading:
     quantities: tuple[tuple[str, str], ...] = ()
     delays: ByChannel = ()
     reversed: bool = False
+    offsets: tuple[str, ...] = ()
     time_constant: float = 0.0
+    both_ways: float = 0.0
+    high_pass: float = 0.0
     window: float = 0.0
     most_orders: int = 0
     turned_forces: float = 0.0
@@ -66,6 +73,10 @@ class Reading:
         before = dict(self.factors)
         product = before | {name: before.get(name, 1.0) * factor for name, factor in factors.items()}
         return replace(self, factors=tuple(sorted(product.items())))
+
+    def with_offsets(self, channels: Iterable[str]) -> Reading:
+        """Return the reading with further channels that have another zero."""
+        return replace(self, offsets=tuple(sorted({*self.offsets, *channels})))
 
     def with_quantities(self, quantities: Mapping[str, str]) -> Reading:
         """Return the reading with other quantities, by channel."""
@@ -94,18 +105,23 @@ def read(problem: Problem, reading: Reading) -> tuple[ChannelOrders, ...]:
         if reading.reversed:
             orders = replace(orders, values=orders.values.conj())
         channel = replace(channel, quantity=quantities.get(channel.name, channel.quantity))
-        result.append(ChannelOrders(channel, orders, gains=_gains(reading, orders.orders)))
+        offset = channel.name in reading.offsets
+        result.append(ChannelOrders(channel, orders, gains=_gains(reading, orders.orders), offset=offset))
     return tuple(result)
 
 
 def _gains(reading: Reading, orders: FloatArray) -> ComplexArray | None:
     """Gains of the filters of a reading at mesh orders; None: no filter.
 
-    A low-pass filter of first order has 1/(1 + i m tau), a moving average over w cycles sin(pi m w)/(pi m w).
+    A low-pass filter of first order has 1/(1 + i m tau), a moving average over w cycles sin(pi m w)/(pi m w),
+    a Butterworth filter of second order both ways 1/(1 + (m tau)^4), a high-pass filter i m/(i m + c).
     """
-    if reading.time_constant <= 0.0 and reading.window <= 0.0 and reading.most_orders == 0:
+    filters = (reading.time_constant, reading.window, reading.both_ways, reading.high_pass)
+    if max(filters) <= 0.0 and reading.most_orders == 0:
         return None
     gains = np.sinc(orders * reading.window) / (1.0 + 1j * orders * reading.time_constant)
+    gains = gains / (1.0 + (orders * reading.both_ways) ** 4)
+    gains = gains * 1j * orders / (1j * orders + max(reading.high_pass, 0.0))
     if reading.most_orders:
         gains = np.where(orders <= reading.most_orders + 1e-9, gains, 0.0)
     return gains.conj() if reading.reversed else gains

@@ -1,7 +1,8 @@
 """The registry of explanations by name: readings of the curves, alterations of the equations, inputs.
 
-A further explanation is an entry of ``OF_READING``, ``OF_MODEL``, ``OF_PAIR`` or ``OF_DESIGN``, a row of the
-table in docs/how_to/check_your_model.md and a case in tests/validation/check/test_explanations.py.
+A further explanation is an entry of ``OF_READING``, ``OF_PAIR``, ``OF_DESIGN``, ``OF_SURFACE`` or
+``OF_MODEL``, a row of the table in docs/how_to/check_your_model.md and a case in
+tests/validation/check/test_explanations.py.
 """
 
 from __future__ import annotations
@@ -14,8 +15,9 @@ from validation.check.explanations.cause import Cause
 from validation.check.explanations.design_inputs import OF_DESIGN
 from validation.check.explanations.inputs import OF_PAIR
 from validation.check.explanations.misreadings import OF_READING
+from validation.check.explanations.surface_inputs import OF_SURFACE
 
 #: Name -> cause, the cheapest first: a reading costs no motion.
 EXPLANATIONS: Mapping[str, Cause] = MappingProxyType(
-    {cause.name: cause for cause in (*OF_READING, *OF_PAIR, *OF_DESIGN, *OF_MODEL)}
+    {cause.name: cause for cause in (*OF_READING, *OF_PAIR, *OF_DESIGN, *OF_SURFACE, *OF_MODEL)}
 )

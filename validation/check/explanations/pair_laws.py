@@ -1,0 +1,314 @@
+"""Alterations of the element laws of a tooth pair: its stiffness over the mesh cycle, its dampers, its error.
+
+Each function takes the element laws over xi and returns altered ones. The stiffness of the whole mesh is the
+sum over all pairs; where it changes, each pair keeps its share of it.
+
+Sources: docs/how_to/check_your_model.md, "Explanations"; docs/theory/equations.md for the laws.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from lumped.mesh.damper import damping_coefficient
+from lumped.path_function import PathFunction
+from lumped.quasi_static.elements import MeshElements, mean_of_pairs
+from lumped.schema.bodies import bodies_of
+from lumped.schema.pair import GearPair
+from lumped.typing import FloatArray
+
+Damper = Literal["of each pair", "of the whole mesh", "proportional", "constant"]
+Stiffness = Literal[
+    "",
+    "reversed",
+    "constant",
+    "single pair",
+    "double pair",
+    "shared evenly",
+    "whole mesh for each pair",
+    "levels exchanged",
+    "first harmonic",
+    "three harmonics",
+    "two levels",
+]
+#: Fit error of an altered law over its largest value.
+TOLERANCE = 1e-7
+#: Positions closer than this share of the base pitch are one.
+SAME = 1e-9
+#: Places in a mesh cycle at which a stiffness is smoothed, and the harmonics of a smoothed stiffness.
+_COURSE = 2048
+_HARMONICS = 30
+#: Least stiffness over its mean, where a change would make it negative.
+_LEAST_STIFFNESS = 0.02
+#: No further breaks.
+_NONE: FloatArray = np.empty(0)
+
+
+def damper_factor(pair: GearPair, elements: MeshElements, law: Damper) -> Callable[[FloatArray], FloatArray]:
+    """Return the factor over xi from the damper of each pair, 2 zeta sqrt(k_i m_e), to another law.
+
+    With K the sum of k_i over all pairs, each pair takes its part k_i/K of the damper of the mesh:
+    2 zeta sqrt(K m_e), proportional 2 zeta K sqrt(m_e/mean K), constant 2 zeta sqrt(mean K m_e).
+    """
+    total = total_of_pairs(pair, elements.stiffness)
+    mean = mean_of_pairs(elements.stiffness, pair.geometry.base_pitch)
+    mass = bodies_of(pair).effective_mass
+
+    def factor(xi: FloatArray) -> FloatArray:
+        whole = np.maximum(total(xi), 1e-6 * mean)
+        stiffness = np.maximum(elements.stiffness(xi), 1e-6 * mean)
+        under_root = {"of the whole mesh": whole, "proportional": whole**2 / mean}.get(law, mean)
+        of_mesh = damping_coefficient(1.0, np.asarray(under_root + 0.0 * whole), mass)
+        of_pair = damping_coefficient(1.0, stiffness, mass)
+        return np.asarray(of_mesh * stiffness / whole / of_pair, dtype=np.float64)
+
+    return factor
+
+
+def total_of_pairs(
+    pair: GearPair, law: PathFunction, extra: float = 0.0
+) -> Callable[[FloatArray], FloatArray]:
+    """Return the sum of a law over all pairs, as a function of the position xi of one of them."""
+    low, high = law.interval
+    pitch = pair.geometry.base_pitch
+    reach = int(np.ceil((high - low + extra) / pitch))
+    shifts = np.arange(-reach, reach + 1) * pitch
+    return lambda xi: np.asarray(law(np.add.outer(xi, shifts)).sum(axis=-1), dtype=np.float64)
+
+
+def marks_of(pair: GearPair, laws: tuple[PathFunction, ...], low: float, high: float) -> FloatArray:
+    """Positions strictly between low and high at which this pair, or another one, passes a break of a law."""
+    pitch = pair.geometry.base_pitch
+    reach = int(np.ceil((high - low) / pitch)) + 1
+    places = np.concatenate([law.breaks for law in laws] + [[low, high]])
+    copies = np.add.outer(places, np.arange(-reach, reach + 1) * pitch).ravel()
+    return separate(copies, pair, low, high)
+
+
+def separate(places: FloatArray, pair: GearPair, low: float, high: float) -> FloatArray:
+    """Return the places strictly between low and high, sorted, of those that are one only the first."""
+    least = SAME * pair.geometry.base_pitch
+    inside = np.sort(places[(places > low + least) & (places < high - least)])
+    return np.asarray(inside[np.diff(inside, prepend=-np.inf) > least], dtype=np.float64)
+
+
+def fitted(
+    function: Callable[[FloatArray], FloatArray],
+    pair: GearPair,
+    elements: MeshElements,
+    interval: tuple[float, float] | None = None,
+    further: FloatArray = _NONE,
+) -> PathFunction:
+    """Fit a law over xi that depends on the pair and its neighbours, with further places of its breaks."""
+    low, high = elements.stiffness.interval if interval is None else interval
+    marks = separate(np.append(marks_of(pair, (elements.stiffness,), low, high), further), pair, low, high)
+    size = float(np.abs(function(np.linspace(low, high, 401)[1:-1])).max())
+    breaks = np.concatenate([[low], marks, [high]])
+    return PathFunction.fit(function, breaks, marks, tolerance=TOLERANCE * max(size, 1e-300))
+
+
+def with_stiffness(pair: GearPair, elements: MeshElements, change: Stiffness) -> MeshElements:
+    """Element laws with another stiffness over the mesh cycle; the dampers follow the new stiffness."""
+    stiffness = elements.stiffness
+    low, high = interval = stiffness.interval
+    pitch = pair.geometry.base_pitch
+    mean = mean_of_pairs(stiffness, pitch)
+    total = total_of_pairs(pair, stiffness)
+    middle = 0.5 * (low + high)
+    if change == "reversed":
+        changed = fitted(lambda xi: stiffness(low + high - xi), pair, elements)
+    elif change == "constant":
+        changed = fitted(lambda xi: mean * stiffness(xi) / total(xi), pair, elements)
+    elif change == "shared evenly":
+        pairs = total_of_pairs(pair, PathFunction.constant(1.0, low, high))
+        changed = fitted(lambda xi: total(xi) / np.maximum(pairs(xi), 1.0), pair, elements)
+    elif change == "whole mesh for each pair":
+        changed = fitted(total, pair, elements)
+    elif change == "levels exchanged":
+        places = low + (np.arange(_COURSE) + 0.5) / _COURSE * pitch
+        both = float(total(places).max() + total(places).min())
+        changed = fitted(lambda xi: stiffness(xi) * (both - total(xi)) / total(xi), pair, elements)
+    elif change in ("first harmonic", "three harmonics", "two levels"):
+        course = _smoother(pair, stiffness, change)
+        changed = fitted(lambda xi: stiffness(xi) * course(xi) / total(xi), pair, elements)
+    else:
+        count = 1.0 if change == "single pair" else 2.0
+        one_pair = float(stiffness(np.array([middle]))[0])
+        interval = (middle - 0.5 * count * pitch, middle + 0.5 * count * pitch)
+        changed = PathFunction.constant(one_pair, *interval)
+    return _with_law(pair, elements, changed, interval)
+
+
+def with_error(
+    pair: GearPair, elements: MeshElements, added: Callable[[FloatArray], FloatArray]
+) -> MeshElements:
+    """Return element laws with a further error of all teeth [m], which repeats from pair to pair."""
+    low, high = elements.error.interval
+
+    def error(xi: FloatArray) -> FloatArray:
+        return np.asarray(elements.error(xi) + added(xi))
+
+    marks = marks_of(pair, (elements.error, elements.stiffness), low, high)
+    size = float(np.abs(error(np.linspace(low, high, 401)[1:-1])).max())
+    breaks = np.concatenate([[low], marks, [high]])
+    fitted = PathFunction.fit(error, breaks, marks, tolerance=TOLERANCE * max(size, 1e-300))
+    return replace(elements, error=fitted)
+
+
+def wave_error(pair: GearPair, cosine: float, sine: float) -> Callable[[FloatArray], FloatArray]:
+    """Return an error over xi at the mesh frequency: amplitudes [m] of its cosine and sine from A on."""
+    g = pair.geometry
+
+    def error(xi: FloatArray) -> FloatArray:
+        angle = 2.0 * np.pi * (xi - g.L_XA) / g.base_pitch
+        return np.asarray(cosine * np.cos(angle) + sine * np.sin(angle))
+
+    return error
+
+
+def static_error(
+    pair: GearPair, stiffness: PathFunction, factor: float
+) -> Callable[[FloatArray], FloatArray]:
+    """Return the static deflection F/K(xi) of the mesh times a factor, as an error of all teeth [m]."""
+    force = pair.operating.pinion_torque / pair.geometry.base_radius_pinion
+    total = total_of_pairs(pair, stiffness)
+    return lambda xi: np.asarray(factor * force / total(xi))
+
+
+def with_lag(pair: GearPair, elements: MeshElements, lag: float) -> MeshElements:
+    """Return element laws whose stiffness of the whole mesh comes late, by mesh cycles.
+
+    A pair has k K(xi - lag p)/K(xi) with the base pitch p.
+    """
+    stiffness = elements.stiffness
+    total = total_of_pairs(pair, stiffness)
+    pitch = pair.geometry.base_pitch
+    delay = lag * pitch
+    low, high = stiffness.interval
+
+    def late(xi: FloatArray) -> FloatArray:
+        earlier = low + np.mod(xi - delay - low, pitch)  # the whole mesh repeats with the base pitch
+        return np.asarray(stiffness(xi) * total(earlier) / total(xi))
+
+    reach = int(np.ceil((high - low) / pitch)) + 2
+    breaks = np.append(stiffness.breaks, [low, high])
+    moved = np.add.outer(breaks, delay + pitch * np.arange(-reach, reach + 1)).ravel()
+    return _with_law(pair, elements, fitted(late, pair, elements, further=moved), stiffness.interval)
+
+
+def with_shape(pair: GearPair, elements: MeshElements, slope: float, curvature: float) -> MeshElements:
+    """Return element laws whose stiffness of a tooth pair has another shape over its path.
+
+    A pair has k (1 + s u + c (1 - 3 u^2)/2) with slope s and curvature c; u runs from -1 to 1 over the path
+    of contact. Both terms have the mean 0 over u.
+    """
+    stiffness = elements.stiffness
+    low, high = stiffness.interval
+
+    def shaped(xi: FloatArray) -> FloatArray:
+        u = (2.0 * xi - low - high) / (high - low)
+        factor = 1.0 + slope * u + 0.5 * curvature * (1.0 - 3.0 * u**2)
+        return np.asarray(stiffness(xi) * np.maximum(factor, _LEAST_STIFFNESS))
+
+    return _with_law(pair, elements, fitted(shaped, pair, elements), stiffness.interval)
+
+
+def with_variation(pair: GearPair, elements: MeshElements, factor: float) -> MeshElements:
+    """Element laws with another variation of the stiffness K of the whole mesh: k (mean + f (K - mean))/K."""
+    stiffness = elements.stiffness
+    mean = mean_of_pairs(stiffness, pair.geometry.base_pitch)
+    total = total_of_pairs(pair, stiffness)
+
+    def changed(xi: FloatArray) -> FloatArray:
+        whole = total(xi)
+        varied = np.maximum(mean + factor * (whole - mean), _LEAST_STIFFNESS * mean)
+        return np.asarray(stiffness(xi) * varied / whole)
+
+    return _with_law(pair, elements, fitted(changed, pair, elements), stiffness.interval)
+
+
+def _with_law(
+    pair: GearPair, elements: MeshElements, changed: PathFunction, interval: tuple[float, float]
+) -> MeshElements:
+    """Element laws with another stiffness of the tooth pair, which the dampers follow, on an interval."""
+    stiffness = elements.stiffness
+    mass = bodies_of(pair).effective_mass
+    ratio = pair.mesh.damping_ratio
+
+    def damping(xi: FloatArray) -> FloatArray:
+        return np.asarray(damping_coefficient(ratio, np.maximum(changed(xi), 0.0), mass), dtype=np.float64)
+
+    return replace(
+        elements,
+        stiffness=changed,
+        damping=fitted(damping, pair, elements, interval) if ratio else changed.scaled(0.0),
+        error=PathFunction.constant(0.0, *interval) if interval != stiffness.interval else elements.error,
+    )
+
+
+def _smoother(
+    pair: GearPair, stiffness: PathFunction, change: Stiffness
+) -> Callable[[FloatArray], FloatArray]:
+    """Return the stiffness of the whole mesh over xi, with less detail than it has.
+
+    Its mean with one harmonic or three, or one value for each number of tooth pairs in contact.
+    """
+    low, high = stiffness.interval
+    course = _course_of(pair, stiffness)
+    places, values = course.places, course.values
+    if change == "two levels":
+        pairs = total_of_pairs(pair, PathFunction.constant(1.0, low, high))
+        count = np.round(pairs(places))
+        levels = {float(number): float(values[count == number].mean()) for number in np.unique(count)}
+        numbers, means = np.array(sorted(levels)), np.array([levels[one] for one in sorted(levels)])
+        return lambda xi: np.asarray(np.interp(np.round(pairs(xi)), numbers, means), dtype=np.float64)
+    return _of_harmonics(course, np.ones(1 if change == "first harmonic" else 3))
+
+
+class _Course(NamedTuple):
+    """The stiffness of the whole mesh [N/m] at equal steps of a base pitch.
+
+    Attributes
+    ----------
+    places : (n,) positions xi [m]
+    values : (n,) stiffness
+    pitch : base pitch [m]
+    """
+
+    places: FloatArray
+    values: FloatArray
+    pitch: float
+
+
+def _course_of(pair: GearPair, stiffness: PathFunction) -> _Course:
+    """The stiffness of the whole mesh over a base pitch."""
+    pitch = pair.geometry.base_pitch
+    places = stiffness.interval[0] + (np.arange(_COURSE) + 0.5) / _COURSE * pitch
+    return _Course(places, total_of_pairs(pair, stiffness)(places), pitch)
+
+
+def _of_harmonics(course: _Course, gains: FloatArray) -> Callable[[FloatArray], FloatArray]:
+    """The mean of a stiffness and its first harmonics times gains (m,), never below a least stiffness."""
+    orders = np.arange(1, gains.size + 1)
+    waves = np.fft.rfft(course.values)[1 : gains.size + 1] * (2.0 / _COURSE) * gains
+    mean = float(course.values.mean())
+
+    def stiffness(xi: FloatArray) -> FloatArray:
+        angle = 2.0 * np.pi * np.multiply.outer((xi - course.places[0]) / course.pitch, orders)
+        return np.asarray(np.maximum(mean + (np.exp(1j * angle) @ waves).real, _LEAST_STIFFNESS * mean))
+
+    return stiffness
+
+
+def with_smoothing(pair: GearPair, elements: MeshElements, window: float) -> MeshElements:
+    """Element laws whose stiffness of the whole mesh is averaged over a window [mesh cycles]."""
+    stiffness = elements.stiffness
+    total = total_of_pairs(pair, stiffness)
+    orders = np.arange(1, _HARMONICS + 1)
+    smooth = _of_harmonics(_course_of(pair, stiffness), np.sinc(window * orders))
+    changed = fitted(lambda xi: stiffness(xi) * smooth(xi) / total(xi), pair, elements)
+    return _with_law(pair, elements, changed, stiffness.interval)
