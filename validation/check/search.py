@@ -374,6 +374,8 @@ class Search:
             guess = _between(path.trial.residual, moved, taken_up)[1]
             if step.choice is not None:
                 guess = _without(moved, taken_up)
+                if np.array_equal(after.residual, before.residual):
+                    guess = -np.inf  # such as dampers that stay: they act behind another step alone
             guesses[step.key] = min(guess, guesses.get(step.key, np.inf))
         return set(sorted(guesses, key=lambda key: guesses[key])[:_PROMISING])
 

@@ -23,6 +23,7 @@ _APART = 5e-3
 #: Trial slopes and curvatures of a stiffness over its path, and trial lags [mesh cycles].
 _SHAPE = (-0.5, -0.2, 0.2, 0.5)
 _LAG = (-0.3, -0.1, 0.1, 0.3)
+_RAMPS = (0.03, 0.1, 0.2, 0.4)
 
 
 def _altered(label: float | str, words: str, **changes: Any) -> Choice:
@@ -408,7 +409,8 @@ def _causes() -> Iterator[Cause]:
     )
     for field, meaning, grid in (
         ("slope", "a further slope of the stiffness of a tooth pair over its path, from A to D", _SHAPE),
-        ("curvature", "a further curvature of the stiffness of a tooth pair over its path", _SHAPE),
+        ("curvature", "a further curvature of the stiffness of a tooth pair, 0 in mid-path", _SHAPE),
+        ("ramps", "ramps over which a tooth pair takes up its stiffness, as shares of its path", _RAMPS),
         ("lag", "the stiffness late against contact and friction, in mesh cycles", _LAG),
     ):
         yield Cause(
@@ -422,6 +424,17 @@ def _causes() -> Iterator[Cause]:
             words=f"{meaning}: {{value}}",
             applies=_may_vary,
         )
+    yield Cause(
+        name="place of the path of contact",
+        kind=Kind.PHYSICS,
+        meaning="a path of contact that lies further along its line, for friction and its lever arms",
+        span="-0.4 to 0.4 base pitches",
+        grid=(-0.4, -0.15, 0.15, 0.4),
+        neutral=0.0,
+        change=lambda variant, value: variant.with_physics(path_shift=value),
+        words="a path of contact {value} base pitches further along its line, for friction and its arms",
+        applies=lambda problem, variant: _has_friction(variant) and variant.pair.shafts is None,
+    )
     yield Cause(
         name="damping of the masses",
         kind=Kind.PHYSICS,

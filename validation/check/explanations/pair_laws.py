@@ -19,6 +19,7 @@ from lumped.path_function import PathFunction
 from lumped.quasi_static.elements import MeshElements, mean_of_pairs
 from lumped.schema.bodies import bodies_of
 from lumped.schema.pair import GearPair
+from lumped.stiffness.base import RAMP
 from lumped.typing import FloatArray
 
 Damper = Literal["of each pair", "of the whole mesh", "proportional", "constant"]
@@ -200,18 +201,34 @@ def with_lag(pair: GearPair, elements: MeshElements, lag: float) -> MeshElements
     return _with_law(pair, elements, fitted(late, pair, elements, further=moved), stiffness.interval)
 
 
+def with_ramps(pair: GearPair, elements: MeshElements, share: float) -> MeshElements:
+    """Return element laws in which a tooth pair takes up and gives up its stiffness over a share of its path.
+
+    The ramps are those of the stiffness models, whose square root is smooth.
+    """
+    stiffness = elements.stiffness
+    low, high = stiffness.interval
+    length = share * (high - low)
+
+    def ramped(xi: FloatArray) -> FloatArray:
+        inside = np.clip(np.minimum(xi - low, high - xi) / length, 0.0, 1.0)
+        return np.asarray(stiffness(xi) * RAMP(inside))
+
+    ends = np.array([low + length, high - length])
+    return _with_law(pair, elements, fitted(ramped, pair, elements, further=ends), stiffness.interval)
+
+
 def with_shape(pair: GearPair, elements: MeshElements, slope: float, curvature: float) -> MeshElements:
     """Return element laws whose stiffness of a tooth pair has another shape over its path.
 
-    A pair has k (1 + s u + c (1 - 3 u^2)/2) with slope s and curvature c; u runs from -1 to 1 over the path
-    of contact. Both terms have the mean 0 over u.
+    A pair has k (1 + s u + c u^2) with slope s and curvature c; u runs from -1 to 1 over the path of contact.
     """
     stiffness = elements.stiffness
     low, high = stiffness.interval
 
     def shaped(xi: FloatArray) -> FloatArray:
         u = (2.0 * xi - low - high) / (high - low)
-        factor = 1.0 + slope * u + 0.5 * curvature * (1.0 - 3.0 * u**2)
+        factor = 1.0 + slope * u + curvature * u**2
         return np.asarray(stiffness(xi) * np.maximum(factor, _LEAST_STIFFNESS))
 
     return _with_law(pair, elements, fitted(shaped, pair, elements), stiffness.interval)

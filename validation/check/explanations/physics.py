@@ -47,6 +47,7 @@ from validation.check.explanations.pair_laws import (
     wave_error,
     with_error,
     with_lag,
+    with_ramps,
     with_shape,
     with_smoothing,
     with_stiffness,
@@ -89,11 +90,14 @@ class Physics:
     arms : lever arms of the friction moments
     mass_damping : dampers of all coordinates in proportion to their masses, as a damping ratio at the mesh
         frequency
+    path_shift : base pitches by which the path of contact lies further along its line, for friction and its
+        lever arms
     course : course of the friction over the path of contact
     radius : factor on the base radii as lever arms of the mesh force and in the transmission error
     damper : law of the dampers of the teeth
     stiffness : change of the stiffness of the tooth pairs over the mesh cycle
     slope, curvature : further slope and curvature of the stiffness of a tooth pair over its path
+    ramps : share of its path over which a tooth pair takes up and gives up its stiffness
     lag : mesh cycles by which the stiffness of the whole mesh comes late
     variation : factor on the variation of the stiffness of the whole mesh about its mean
     smoothing : window of a moving average of the stiffness of the whole mesh [mesh cycles]
@@ -113,12 +117,14 @@ class Physics:
     approach_gear: float = 1.0
     arms: Arms = ""
     mass_damping: float = 0.0
+    path_shift: float = 0.0
     course: Friction = ""
     radius: float = 1.0
     damper: Damper = "of each pair"
     stiffness: Stiffness = ""
     slope: float = 0.0
     curvature: float = 0.0
+    ramps: float = 0.0
     lag: float = 0.0
     variation: float = 1.0
     smoothing: float = 0.0
@@ -147,7 +153,7 @@ class Physics:
 
 
 #: Fields that alter the stiffness of the teeth, their error, and the constant data of the equations.
-_OF_STIFFNESS = ("stiffness", "slope", "curvature", "lag", "variation", "smoothing")
+_OF_STIFFNESS = ("stiffness", "slope", "curvature", "ramps", "lag", "variation", "smoothing")
 _OF_ERROR = ("error_cosine", "error_sine", "static_error")
 _OF_EQUATIONS = (
     "moment_pinion",
@@ -159,6 +165,7 @@ _OF_EQUATIONS = (
     "approach_gear",
     "arms",
     "mass_damping",
+    "path_shift",
     "radius",
     "bearings",
 )
@@ -227,6 +234,7 @@ def altered_equations(pair: GearPair, physics: Physics) -> Structure:
     normal = s.normal.copy()
     deflection = s.deflection.copy()
     arm = friction_arms(pair, physics.arms)
+    arm[:, 0] += arm[:, 1] * physics.path_shift * pair.geometry.base_pitch
     rotations = [THETA_P, THETA_G]
     translations = [X_P, X_G, Y_P, Y_G]
     normal[rotations] *= physics.radius
@@ -282,6 +290,8 @@ def altered_elements(pair: GearPair, physics: Physics) -> MeshElements:
         elements = with_stiffness(pair, elements, physics.stiffness)
     if physics.slope or physics.curvature:
         elements = with_shape(pair, elements, physics.slope, physics.curvature)
+    if physics.ramps:
+        elements = with_ramps(pair, elements, physics.ramps)
     if physics.variation != 1.0:
         elements = with_variation(pair, elements, physics.variation)
     if physics.smoothing > 0.0:
@@ -304,9 +314,29 @@ def altered_friction(
     pair: GearPair, friction: PathFunction, stiffness: PathFunction, physics: Physics
 ) -> PathFunction:
     """Return the friction coefficient over xi with alterations of its size and of its course."""
+    if physics.path_shift:
+        friction = _shifted_friction(pair, friction, physics.path_shift * pair.geometry.base_pitch)
     if physics.course:
         friction = _friction_over_path(pair, friction, stiffness, physics.course)
     return friction if physics.friction == 1.0 else friction.scaled(physics.friction)
+
+
+def _shifted_friction(pair: GearPair, friction: PathFunction, shift: float) -> PathFunction:
+    """Friction coefficient over xi of a path of contact that lies further along its line by a length [m].
+
+    Beyond its ends the coefficient stays.
+    """
+    low, high = friction.interval
+    edge = SAME * pair.geometry.base_pitch
+
+    def further(xi: FloatArray) -> FloatArray:
+        return np.asarray(friction(np.clip(xi + shift, low + edge, high - edge)))
+
+    marks = np.append(friction.breaks, [low, high, pair.geometry.L_XP]) - shift
+    marks = separate(marks, pair, low, high)
+    size = float(np.abs(further(np.linspace(low, high, 401)[1:-1])).max())
+    breaks = np.concatenate([[low], marks, [high]])
+    return PathFunction.fit(further, breaks, marks, tolerance=TOLERANCE * max(size, 1e-300))
 
 
 def _friction_over_path(

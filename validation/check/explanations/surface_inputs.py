@@ -33,6 +33,8 @@ _TORQUE_UNITS = (
     ("N m taken for kilogram-force metres", 9.80665),
     ("kilogram-force metres taken for N m", 1.0 / 9.80665),
 )
+#: Addenda, or lengths over the base pitch, closer than this are one.
+_SAME = 5e-3
 _RELIEFS = ("tip_relief", "root_relief")
 
 
@@ -140,8 +142,9 @@ def _relief_shape(problem: Problem, variant: Variant) -> list[Choice]:
     other = "parabolic" if shape == "linear" else "linear"
 
     def change(one: Variant) -> Variant:
+        relieved = _relieved_tips(one.pair)
         return one.with_inputs(
-            {f"{gear}.tip_relief": _tip_relief(one.pair, gear) | {"shape": other} for gear in tips}
+            {f"{gear}.tip_relief": _tip_relief(one.pair, gear) | {"shape": other} for gear in relieved}
         )
 
     return [Choice(other, f"{other} tip relief in place of {shape} tip relief", change)]
@@ -207,32 +210,15 @@ def _tips_exchanged(problem: Problem, variant: Variant) -> list[Choice]:
         "pinion.tip_diameter": to_stated(2.0 * (g.reference_radius_pinion + addenda[1]), "mm"),
         "gear.tip_diameter": to_stated(2.0 * (g.reference_radius_gear + addenda[0]), "mm"),
     }
-    words = "the addenda of pinion and gear exchanged"
-    choices = (
-        []
-        if abs(addenda[0] - addenda[1]) < 1e-3 * addenda[0]
-        else [Choice("addenda", words, lambda one: one.with_inputs(fields))]
-    )
-    mirrored = _mirrored_tips(variant.pair)
-    if mirrored is not None:
-        words = (
-            "approach and recess exchanged: contact starts at the tip of the pinion and ends at the gear's"
-        )
-        choices.append(Choice("approach and recess", words, lambda one: one.with_inputs(mirrored)))
+    choices = []
+    if abs(addenda[0] - addenda[1]) > _SAME * addenda[0]:
+        words = "the addenda of pinion and gear exchanged"
+        choices.append(Choice("addenda", words, lambda one: one.with_inputs(fields)))
+    shift = (g.L_XY - g.L_XD - g.L_XA) / g.base_pitch
+    if abs(shift) > _SAME:
+        words = "approach and recess exchanged: contact starts at the pinion's tip and ends at the gear's"
+        choices.append(Choice("approach and recess", words, lambda one: one.with_physics(path_shift=shift)))
     return choices
-
-
-def _mirrored_tips(pair: GearPair) -> dict[str, Any] | None:
-    """Tip diameters with which the lengths of approach and recess are exchanged; None: they are equal."""
-    g = pair.geometry
-    approach, recess = g.L_XP - g.L_XA, g.L_XD - g.L_XP
-    if abs(approach - recess) < 5e-3 * g.base_pitch:
-        return None
-    ends = {"pinion": g.L_XP + approach, "gear": g.L_XY - g.L_XP + recess}
-    return {
-        f"{gear}.tip_diameter": to_stated(2.0 * math.hypot(end, getattr(g, f"base_radius_{gear}")), "mm")
-        for gear, end in ends.items()
-    }
 
 
 def _shift_balance(variant: Variant, value: float) -> Variant:
