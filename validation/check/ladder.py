@@ -234,6 +234,8 @@ def _pruned(search: Search, best: Path, limit: float, floor: float) -> Path:
     number = 0
     while number < len(best.steps) and len(best.steps) > 1:
         shorter = _refitted(search, without_step(best, number))
+        if shorter is not None and shorter.trial.value > best.trial.value:
+            shorter = search.searched_free(shorter)
         kept_by_frequency = search.of_frequency(best.steps[number].cause)
         if shorter is None or kept_by_frequency or _accepted(best, shorter, limit, floor):
             number += 1

@@ -497,6 +497,19 @@ class Search:
             pass
         return path
 
+    def searched_free(self, path: Path) -> Path:
+        """Return a path with each free parameter searched by Brent's method, one after the other, and fitted.
+
+        Gauss-Newton steps stall where the motion has jumps that move with a parameter.
+        """
+        for step in path.steps:
+            if step.choice is None:
+                turned = tuple(one for one in path.steps if one.key != step.key)
+                here = next(one for one in path.steps if one.key == step.key)
+                path = self.fitted(self._searched(Path((*turned, here), path.trial)))
+        self._keep(path)
+        return path
+
     def _searched(self, path: Path) -> Path:
         """The path with the free parameter of its last step by Brent's method, within a step of the grid."""
         *before, step = path.steps

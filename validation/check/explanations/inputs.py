@@ -125,11 +125,11 @@ def _reference_radii(pair: GearPair) -> tuple[float, float]:
 
 
 def _addendum(pair: GearPair, value: float) -> Fields:
-    """Tip diameters of both gears, for addenda times a factor."""
-    radii = zip(_GEARS, _tip_radii(pair), _reference_radii(pair), strict=True)
+    """Tip diameters of both gears, for an addendum coefficient of the rack times a factor."""
+    addendum = pair.basic_rack.addendum_coefficient * pair.basic_rack.module
     return {
-        f"{gear}.tip_diameter": to_stated(2.0 * (reference + value * (tip - reference)), "mm")
-        for gear, tip, reference in radii
+        f"{gear}.tip_diameter": to_stated(2.0 * (tip + (value - 1.0) * addendum), "mm")
+        for gear, tip in zip(_GEARS, _tip_radii(pair), strict=True)
     }
 
 
@@ -142,7 +142,7 @@ def _tips(pair: GearPair) -> Fields:
 
 
 def _addendum_of(gear: str) -> Callable[[GearPair, float], Fields]:
-    """Tip diameter of one gear, for its addendum times a factor."""
+    """Tip diameter of one gear, for its addendum coefficient times a factor."""
     field = f"{gear}.tip_diameter"
     return lambda pair, value: {field: _addendum(pair, value)[field]}
 
@@ -277,9 +277,11 @@ def _free() -> Iterator[Cause]:
                 f"bearing {noun}{ending}", f"the {noun} of the bearings {words}", grid, fields, _on_springs
             )
     yield free("face width", "the face width of both gears", _NEAR, _width)
-    yield free("addendum", "the addenda of both gears", _LENGTH, _addendum)
+    yield free("addendum", "the addendum coefficient of both gears", _LENGTH, _addendum)
     for gear in _GEARS:
-        yield free(f"addendum of the {gear}", f"the addendum of the {gear}", _LENGTH, _addendum_of(gear))
+        yield free(
+            f"addendum of the {gear}", f"the addendum coefficient of the {gear}", _LENGTH, _addendum_of(gear)
+        )
     yield Cause(
         name="numerical damping",
         kind=Kind.INPUT,

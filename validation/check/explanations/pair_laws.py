@@ -262,7 +262,7 @@ def _with_law(
     return replace(
         elements,
         stiffness=changed,
-        damping=fitted(damping, pair, elements, interval) if ratio else changed.scaled(0.0),
+        damping=fitted(damping, pair, elements, interval, changed.breaks) if ratio else changed.scaled(0.0),
         error=PathFunction.constant(0.0, *interval) if interval != stiffness.interval else elements.error,
     )
 

@@ -13,6 +13,7 @@ from lumped.fields.units import to_stated
 from lumped.schema.fields_read import fields_read
 from lumped.schema.pair import GearPair
 from lumped.schema.tooth_errors import tooth_errors
+from lumped.stiffness.parabolic import ParabolicStiffness, iso_end_ratio
 from validation.check.explanations.cause import Cause, Choice, Kind, Variant
 from validation.check.problem import Problem
 
@@ -22,6 +23,8 @@ _VISCOSITY = (0.05, 0.3, 3.0, 20.0)
 _ROUGHNESS = (0.2, 0.5, 2.0, 5.0)
 _RELIEF_LENGTH = (0.5, 0.75, 1.33, 2.0)
 _DEVIATIONS = (0.5, 2.0)
+#: Trial factors of the end ratio of a parabola.
+_END_RATIO = (0.4, 0.7, 1.2, 1.5)
 #: Trial amounts by which one profile shift grows and the other one falls.
 _BALANCE = (-0.3, -0.12, 0.12, 0.3)
 #: Torques of other units in N m: the pound-force inch, the pound-force foot and the kilogram-force metre.
@@ -47,6 +50,14 @@ def _viscosity(variant: Variant, value: float) -> Variant:
     """The dynamic viscosity of the oil times a factor, as a number in place of a law."""
     viscosity = to_stated(variant.pair.lubricant.dynamic_viscosity, "mPa*s") * value
     return variant.with_inputs({"lubricant.viscosity": viscosity, "lubricant.viscosity_law": None})
+
+
+def _end_ratio(variant: Variant, value: float) -> Variant:
+    """The stiffness at the ends of the path over the peak of the parabola, times a factor, at most 1."""
+    stiffness = variant.pair.mesh.stiffness
+    assert isinstance(stiffness, ParabolicStiffness)  # the cause applies to this model alone
+    ratio = stiffness.end_ratio or iso_end_ratio(variant.pair.geometry.contact_ratio)
+    return variant.with_inputs({"mesh.stiffness.end_ratio": min(ratio * value, 1.0)})
 
 
 def _roughness(variant: Variant, value: float) -> Variant:
@@ -255,6 +266,13 @@ def _causes() -> Iterator[Cause]:
     ) -> Cause:
         return Cause(name, Kind.INPUT, meaning, span, choices)
 
+    yield free(
+        "ends of the parabola",
+        "the end ratio of the parabolic stiffness",
+        _END_RATIO,
+        _end_ratio,
+        lambda problem, variant: variant.pair.mesh.stiffness.model == "parabolic",
+    )
     yield free("viscosity", "the viscosity of the oil", _VISCOSITY, _viscosity, _reads("lubricant.viscosity"))
     yield free("roughness", "the roughness of both gears", _ROUGHNESS, _roughness, _reads("pinion.roughness"))
     yield fixed(
