@@ -124,7 +124,7 @@ def exchanged_springs(drawing: Drawing) -> Drawing:
 
 
 def at_reference_centre_distance(drawing: Drawing) -> Drawing:
-    """Shifted gears stand at half the sum of the reference diameters; tips have the shift and no alteration."""
+    """Shifted gears stand at the reference centre distance; tips have the shift and no alteration."""
     addendum = drawing.parameters["basic_rack"].get("addendum_coefficient", 1.0)
 
     def tip(wheel: Any) -> Any:
@@ -242,7 +242,7 @@ def translation_mass_damping(model: Model, xi: np.ndarray) -> np.ndarray:
 
 
 def constant_mesh_damping(model: Model, xi: np.ndarray) -> np.ndarray:
-    """The mesh has one damper, 2 zeta sqrt(k_mean m_e), which the pairs in contact share by their stiffness."""
+    """The mesh has one damper, 2 zeta sqrt(k_mean m_e), shared by the stiffness of the pairs."""
     total, mean = total_stiffness(model)
     damper = 2.0 * model.drawing.mesh_damping * math.sqrt(mean * model.effective_mass)
     return np.asarray(damper * model.stiffness(xi) / np.maximum(total(xi), 1e-3 * mean))
