@@ -311,7 +311,7 @@ WEIGHTS = (
         Point("long_short_14_49", 4300.0, 500.0),
         ("theta_g", "theta_p", "dte", "x_g"),
         Mistake(
-            "the inertia of the motor, four times that of the pinion, is added behind a soft shaft",
+            "the inertia of the motor, four times that of the pinion, is added to that of the pinion",
             drawing=f.weights(1.0, 5.0, 1.0),
         ),
     ),
