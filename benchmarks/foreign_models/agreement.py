@@ -1,6 +1,6 @@
 """Agreement of the sound, fine motions of the users with ``lumped.steady_state``, at all operating points.
 
-python -m benchmarks.foreign_models.agreement [judging]
+python -m benchmarks.foreign_models.agreement [judging|fourth]
 """
 
 from __future__ import annotations
@@ -14,6 +14,8 @@ import numpy as np
 
 import lumped
 from benchmarks.foreign_models.differences import orders_of
+from benchmarks.foreign_models.fourth import FOURTH_SOUND, FOURTH_WRONG
+from benchmarks.foreign_models.fourth_pairs import at
 from benchmarks.foreign_models.recipe import Recipe, Settings
 from benchmarks.foreign_models.sound import RUNS, changed_pair, is_torsional
 from benchmarks.foreign_models.third import THIRD_WRONG
@@ -30,9 +32,15 @@ class Point(NamedTuple):
     torsional: bool
 
 
-def operating_points(judging: bool) -> Iterator[Point]:
-    """Operating points of the first set, or of the third."""
-    if judging:
+def operating_points(arguments: list[str]) -> Iterator[Point]:
+    """Operating points of the first set; of the third with "judging", of the fourth with "fourth"."""
+    if "fourth" in arguments:
+        for case in FOURTH_WRONG:
+            yield Point(case.pair, case.unilateral, case.torsional)
+        for name, speed, torque, unilateral in (one.point for one in FOURTH_SOUND):
+            yield Point(at(name, speed, torque), unilateral, torsional=False)
+        return
+    if "judging" in arguments:
         for one in (*THIRD_WRONG, *THIRD_TWO):
             yield Point(one.pair, one.unilateral, one.torsional)
         return
@@ -44,12 +52,12 @@ def operating_points(judging: bool) -> Iterator[Point]:
 def main(arguments: list[str]) -> None:
     """Print, for each operating point, how far complex orders and means are off [%].
 
-    The argument "judging" takes the third set.
+    The argument "judging" takes the third set, "fourth" the fourth.
     """
     warnings.simplefilter("ignore")
     print("| pair | rpm | N m | contact | orders 1 to 40: largest | of dte | means: largest |")
     print("|---|---|---|---|---|---|---|")
-    for pair, unilateral, torsional in operating_points("judging" in arguments):
+    for pair, unilateral, torsional in operating_points(arguments):
         contact = "unilateral" if unilateral else "linear"
         ours = lumped.steady_state(pair, contact=contact, samples_per_cycle=512)
         silent = ("y_p", "y_g", "bearing_force_y_p", "bearing_force_y_g")

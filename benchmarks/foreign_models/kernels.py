@@ -31,6 +31,14 @@ def pair_load(delta, rate, entry, numbers):
 
 
 @njit(cache=True)
+def friction_of(load, entry, numbers):
+    """Friction force of one tooth pair: by its normal load, or by its share of a load that does not vary."""
+    if numbers.static_load > 0.0:
+        return entry.mu * entry.share * numbers.static_load
+    return entry.mu * load
+
+
+@njit(cache=True)
 def approach(state, numbers):
     """Approach of the flanks delta."""
     turned = numbers.base_p * state[0] - numbers.base_g * state[1]
@@ -50,9 +58,10 @@ def rates(time, state, numbers, table, out):
             continue
         load = pair_load(delta, delta_rate, entry, numbers)
         normal += load
-        friction += entry.mu * load
-        moment_p += entry.arm_p * entry.mu * load
-        moment_g += entry.arm_g * entry.mu * load
+        rubbing = friction_of(load, entry, numbers)
+        friction += rubbing
+        moment_p += entry.arm_p * rubbing
+        moment_g += entry.arm_g * rubbing
     drive = numbers.torque_p - numbers.drive_stiffness * state[0]
     drive += numbers.ripple * np.cos(2.0 * np.pi * numbers.ripple_order * time / numbers.period)
     out[:6] = state[6:]
@@ -84,7 +93,7 @@ def tooth_loads(times, states, numbers, table, normal, friction):
             if entry.stiffness == 0.0 and entry.damping == 0.0:
                 continue
             normal[i, n] = pair_load(delta, delta_rate, entry, numbers)
-            friction[i, n] = entry.mu * normal[i, n]
+            friction[i, n] = friction_of(normal[i, n], entry, numbers)
 
 
 @njit(cache=True)

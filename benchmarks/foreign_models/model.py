@@ -28,10 +28,14 @@ FIELDS = (
     *("force_sign_xp", "force_sign_xg", "force_sign_yp", "force_sign_yg"),
     *("load_xp", "load_xg", "load_yp", "load_yg"),
     *("drive_stiffness", "ripple", "ripple_order", "x_in_approach", "hardening", "reference_compression"),
+    "static_load",
 )
 NUMBERS = np.dtype([(name, "f8") for name in FIELDS])
 ENTRY = np.dtype(
-    [(name, "f8") for name in ["stiffness", "damping", "mu", "error", "error_rate", "arm_p", "arm_g"]]
+    [
+        (name, "f8")
+        for name in ["stiffness", "damping", "mu", "share", "error", "error_rate", "arm_p", "arm_g"]
+    ]
 )
 
 #: Order of the displacements in a state; their rates follow in the same order.
@@ -181,6 +185,7 @@ def table_of(model: Model) -> np.ndarray:
         row["error_rate"] = np.where(on, slope * line.base_pitch / model.period, 0.0)
         row["arm_p"] = model.arm_p(model, xi)
         row["arm_g"] = model.arm_g(model, xi)
+    table["share"] = table["stiffness"] / np.maximum(table["stiffness"].sum(axis=0), 1e-300)
     if model.total is not None:
         table["stiffness"] *= model.total(phase, table["stiffness"].sum(axis=0))
     return table
