@@ -148,19 +148,19 @@ def _best_path(search: Search, limit: float, floor: float) -> Path:
     enough = max(limit * _ENOUGH, floor)
     while best.trial.value > enough and len(best.steps) < _MOST_STEPS and not search.spent:
         candidates: list[Path] = []
-        near = [path for path in beam if path.score(floor) < _NEAR_BEST * beam[0].score(floor)]
+        near = [path for path in beam if path.score(floor, limit) < _NEAR_BEST * beam[0].score(floor, limit)]
         for path in near:
             candidates += [one for one in search.expand(path) if _accepted(one, path, limit, floor)]
             if candidates and min(one.trial.value for one in candidates) <= enough:
                 break
-        beam = _distinct(candidates, floor)
+        beam = _distinct(candidates, floor, limit)
         if not beam or not _accepted(beam[0], best, limit, floor):
             little = best.trial.value > _LITTLE * search.problem.misfit.value
             if best.trial.value <= limit or len(best.steps) > 1 or not little:
                 break
             # No single step says enough: a wrong sign may hide every other cause.
             joint = [one for one in search.with_reading(best) if _accepted(one, best, limit, floor)]
-            beam = _distinct([*beam, *joint], floor)
+            beam = _distinct([*beam, *joint], floor, limit)
             if not beam:
                 break
         best = beam[0]
@@ -198,10 +198,10 @@ def _accepted(path: Path, before: Path, limit: float, floor: float) -> bool:
     return gain > max(share * before.trial.value, floor)
 
 
-def _distinct(paths: list[Path], floor: float) -> list[Path]:
+def _distinct(paths: list[Path], floor: float, limit: float) -> list[Path]:
     """The best paths of a beam with motions that differ."""
     beam: list[Path] = []
-    for path in sorted(paths, key=lambda one: one.score(floor)):
+    for path in sorted(paths, key=lambda one: one.score(floor, limit)):
         near = max(_SAME_MOTION * path.trial.value, floor)
         if all(np.linalg.norm(path.trial.residual - one.trial.residual) > near for one in beam):
             beam.append(path)
@@ -221,7 +221,7 @@ def _exchanged(search: Search, best: Path, limit: float, floor: float) -> Path:
             for path in search.expand(parent):
                 if path.vague and path.trial.value > limit:
                     continue
-                if path.score(floor) < _BETTER * better.score(floor):
+                if path.score(floor, limit) < _BETTER * better.score(floor, limit):
                     better = path
         if better is best:
             break

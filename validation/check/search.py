@@ -41,6 +41,8 @@ from validation.check.problem import Problem
 
 #: A free parameter counts as this much worse than a fixed value with the same misfit.
 FREE_IS_WORSE = 1.15
+#: Misfits below this share of the limit count as alike.
+_ALIKE = 0.1
 #: Step of the derivatives by a free parameter, on the scale of the search.
 _DIFFERENCE = 0.01
 #: Most Gauss-Newton steps, and the share of the misfit that a step must gain.
@@ -160,9 +162,13 @@ class Path:
         """Whether many a cause has about the effect of the last step."""
         return bool(self.steps) and self.steps[-1].choice is not None and self.steps[-1].choice.vague
 
-    def score(self, floor: float) -> float:
-        """Return the misfit, not below ``floor``, with the price of the free parameters."""
-        return float(np.hypot(self.trial.value, floor)) * FREE_IS_WORSE**self.free
+    def score(self, floor: float, limit: float = 0.0) -> float:
+        """Return the misfit with the price of the free parameters.
+
+        Misfits below ``floor``, and below a tenth of the limit, count as alike.
+        """
+        alike = np.hypot(floor, _ALIKE * limit)
+        return float(np.hypot(self.trial.value, alike)) * FREE_IS_WORSE**self.free
 
 
 #: Motions of changed models; None: the model has no motion.

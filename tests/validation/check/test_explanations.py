@@ -152,6 +152,9 @@ FURTHER = (
     ("static error as an excitation", "second excitation, wrong sign"),
     ("pitch radius", "diameter"),
     ("tips exchanged", "approach and recess"),
+    ("tips exchanged", "line turned round"),
+    ("tips exchanged", "without shifts"),
+    ("number of teeth", "gear: -2"),
 )
 FREE = {
     "mesh stiffness": 1.17,

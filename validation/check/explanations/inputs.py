@@ -32,6 +32,8 @@ _SAME_CENTRE = 1e-4
 #: Trial steps of an integrator, and steps of 1 in a mesh cycle.
 _STEPS = (-2.0, -0.5, 0.5, 2.0, 6.0)
 _STEPS_PER_CYCLE = 500.0
+#: Clearance of a tip at the mate's root over the module.
+_CLEARANCE = 0.05
 _GEARS = ("pinion", "gear")
 _LINES = ("loa", "oloa")
 _PRESSURE_ANGLES = (14.5, 17.5, 20.0, 22.5, 25.0)
@@ -139,6 +141,19 @@ def _tips(pair: GearPair) -> Fields:
         f"{gear}.tip_diameter": to_stated(2.0 * tip, "mm")
         for gear, tip in zip(_GEARS, _tip_radii(pair), strict=True)
     }
+
+
+def _roots_for_tips(pair: GearPair) -> Fields:
+    """A larger dedendum where the tips have no room at the standard centre distance; else nothing."""
+    rack = pair.basic_rack
+    references = _reference_radii(pair)
+    overlaps = [
+        tip + other - sum(references) for tip, other in zip(_tip_radii(pair), references[::-1], strict=True)
+    ]
+    needed = max(overlaps) / rack.module + _CLEARANCE
+    if needed <= rack.dedendum_coefficient:
+        return {}
+    return {"basic_rack.dedendum_coefficient": needed, "basic_rack.fillet_radius_coefficient": None}
 
 
 def _addendum_of(gear: str) -> Callable[[GearPair, float], Fields]:
@@ -519,9 +534,8 @@ def _shifts(problem: Problem, variant: Variant) -> list[Choice]:
     if abs(standard - 1.0) > _SAME_CENTRE:
         words = "the standard centre distance, half of the module times the sum of the teeth"
         # With the shifts the teeth would wedge: the line of action and the tips are those of the curves.
-        choices.append(
-            _choice("standard centre", words, lambda pair: {**none, **_tips(pair), "centre_distance": None})
-        )
+        fields = {**none, **_tips(variant.pair), **_roots_for_tips(variant.pair), "centre_distance": None}
+        choices.append(_choice("standard centre", words, _constant(fields)))
     if first != second:
         exchanged = {"pinion.profile_shift": second, "gear.profile_shift": first}
         words = "the profile shifts of pinion and gear exchanged"
@@ -530,10 +544,10 @@ def _shifts(problem: Problem, variant: Variant) -> list[Choice]:
 
 
 def _number_of_teeth(problem: Problem, variant: Variant) -> list[Choice]:
-    """One tooth more or less on a gear; tips and centre distance stay."""
+    """One tooth or two more or less on a gear; tips and centre distance stay."""
     choices = []
     for gear in _GEARS:
-        for more in (-1, 1):
+        for more in (-1, 1, -2, 2):
             count = getattr(variant.pair, gear).teeth + more
             # Another profile shift, so that the tooth has its thickness at the same centre distance.
             fields = {
@@ -667,7 +681,10 @@ def _fixed() -> Iterator[Cause]:
         _shifts,
     )
     yield fixed(
-        "number of teeth", "one tooth more or less on a gear", "pinion, gear: -1, 1", _number_of_teeth
+        "number of teeth",
+        "one tooth or two more or less on a gear",
+        "pinion, gear: -2, -1, 1, 2",
+        _number_of_teeth,
     )
     yield fixed("one face width", "one face width for both gears", "pinion, gear", _one_width)
 

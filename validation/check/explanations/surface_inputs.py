@@ -225,11 +225,40 @@ def _tips_exchanged(problem: Problem, variant: Variant) -> list[Choice]:
     if abs(addenda[0] - addenda[1]) > _SAME * addenda[0]:
         words = "the addenda of pinion and gear exchanged"
         choices.append(Choice("addenda", words, lambda one: one.with_inputs(fields)))
-    shift = (g.L_XY - g.L_XD - g.L_XA) / g.base_pitch
-    if abs(shift) > _SAME:
-        words = "approach and recess exchanged: contact starts at the pinion's tip and ends at the gear's"
-        choices.append(Choice("approach and recess", words, lambda one: one.with_physics(path_shift=shift)))
+    shifts = {
+        "approach and recess": (
+            2.0 * g.L_XP - g.L_XA - g.L_XD,
+            "the lengths of approach and recess exchanged, about the pitch point",
+        ),
+        "line turned round": (
+            g.L_XY - g.L_XD - g.L_XA,
+            "the line of action turned round: contact starts at the pinion's tip and ends at the gear's",
+        ),
+    }
+
+    def further(length: float) -> Callable[[Variant], Variant]:
+        return lambda one: one.with_physics(path_shift=length / g.base_pitch)
+
+    choices += [
+        Choice(label, words, further(length))
+        for label, (length, words) in shifts.items()
+        if abs(length) > _SAME * g.base_pitch
+    ]
+    tips = _tips_without_shifts(variant.pair)
+    if tips is not None:
+        words = "tip circles of gears without profile shift"
+        choices.append(Choice("without shifts", words, lambda one: one.with_inputs(tips)))
     return choices
+
+
+def _tips_without_shifts(pair: GearPair) -> dict[str, Any] | None:
+    """Tip diameters of gears without profile shift; None: they are those of the pair."""
+    g = pair.geometry
+    addendum = pair.basic_rack.addendum_coefficient * pair.basic_rack.module
+    tips = {gear: getattr(g, f"reference_radius_{gear}") + addendum for gear in _GEARS}
+    if all(abs(tips[gear] - getattr(g, f"tip_radius_{gear}")) < 1e-3 * addendum for gear in _GEARS):
+        return None
+    return {f"{gear}.tip_diameter": to_stated(2.0 * tip, "mm") for gear, tip in tips.items()}
 
 
 def _shift_balance(variant: Variant, value: float) -> Variant:
@@ -309,8 +338,8 @@ def _causes() -> Iterator[Cause]:
     )
     yield fixed(
         "tips exchanged",
-        "addenda, or approach and recess, exchanged",
-        "addenda; approach and recess",
+        "addenda, or approach and recess, exchanged; tips of gears without shift",
+        "addenda; approach and recess; line turned round; without shifts",
         _tips_exchanged,
     )
     yield Cause(
