@@ -3,8 +3,8 @@
     python -m benchmarks.bench_check [number of a case ...]
 
 The wrong models are those of `ForeignModel`, a small model with code of its own: constant coefficients in
-each step, matrix exponentials, prescribed contact, Coulomb friction. The held-back set of wrong models is
-another one, by another author: no entry of the registry was chosen by it.
+each step, matrix exponentials, prescribed contact, Coulomb friction. Wrong models of
+other authors are in ``benchmarks/foreign_models``.
 """
 
 from __future__ import annotations

@@ -43,6 +43,7 @@ def test_friction_over_the_path(pair):
     expected = {
         "without reversal": 0.06 + 0.0 * xi,
         "leading pair": np.where(leads, 0.06 * sign, 0.0),
+        "newest pair": np.where(xi - pair.geometry.base_pitch < pair.geometry.L_XA, 0.06 * sign, 0.0),
         "": 0.06 * sign,
     }
     for course, values in expected.items():
@@ -62,6 +63,10 @@ def test_total_load_on_the_leading_pair(pair):
     law = altered_elements(pair, Physics(course="total load on the leading pair")).friction
     sign = np.sign(xi - pair.geometry.L_XP)
     expected = np.where(leads, 0.06 * sign * total_of(pair, stiffness) / stiffness(xi), 0.0)
+    assert law(xi) == pytest.approx(expected, rel=1e-4, abs=1e-9)
+    law = altered_elements(pair, Physics(course="total load on the newest pair")).friction
+    newest = xi - pair.geometry.base_pitch < pair.geometry.L_XA
+    expected = np.where(newest, 0.06 * sign * total_of(pair, stiffness) / stiffness(xi), 0.0)
     assert law(xi) == pytest.approx(expected, rel=1e-4, abs=1e-9)
 
 

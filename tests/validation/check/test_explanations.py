@@ -153,6 +153,7 @@ FURTHER = (
     ("pitch radius", "diameter"),
     ("tips exchanged", "approach and recess"),
     ("tips exchanged", "line turned round"),
+    ("friction over the path", "total load on the newest pair"),
     ("tips exchanged", "without shifts"),
     ("number of teeth", "gear: -2"),
 )

@@ -106,6 +106,12 @@ def _friction_course(problem: Problem, variant: Variant) -> list[Choice]:
             "friction of the whole mesh force at the leading tooth pair",
             course="total load on the leading pair",
         ),
+        _altered("newest pair", "friction of the newest tooth pair only", course="newest pair"),
+        _altered(
+            "total load on the newest pair",
+            "friction of the whole mesh force at the newest tooth pair",
+            course="total load on the newest pair",
+        ),
         *_reversals(variant),
     ]
 
@@ -315,8 +321,8 @@ def _causes() -> Iterator[Cause]:
     yield altered(
         "friction over the path",
         "another course of the friction over the path of contact",
-        "without reversal, leading pair, total load on the leading pair, pitch point of the rack, "
-        "middle of the path",
+        "without reversal; leading or newest pair, with its load or the load of the mesh; pitch point of the "
+        "rack; middle of the path",
         _friction_course,
     )
     yield Cause(

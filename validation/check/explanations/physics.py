@@ -68,6 +68,8 @@ Friction = Literal[
     "without reversal",
     "leading pair",
     "total load on the leading pair",
+    "newest pair",
+    "total load on the newest pair",
     "pitch point of the rack",
     "middle of the path",
 ]
@@ -345,13 +347,15 @@ def _friction_over_path(
     """Friction coefficient over xi with another course.
 
     Without reversal: |mu|. Only the leading pair, the last one that is on the path of contact: mu where the
-    next pair is no longer there, else 0. Its friction by the load of all pairs: mu K/k there, with the
+    next pair is no longer there, else 0. Only the newest pair, the one that came into contact last: the same
+    before the next pair comes. The friction of one pair by the load of all pairs: mu K/k there, with the
     stiffness K of the whole mesh, because loads are shared as stiffnesses. Reversal at another place: |mu|
     with the sign that mu has on its side of that place.
     """
     low, high = friction.interval
     pitch = pair.geometry.base_pitch
-    leads = high - pitch
+    only_newest = course.endswith("newest pair")
+    change_of_pairs = low + pitch if only_newest else high - pitch
     total = total_of_pairs(pair, stiffness)
     reversal = reversal_of(pair, course, low, high)
     behind = float(np.sign(friction(np.array([high - SAME * pitch]))[0]))
@@ -361,16 +365,17 @@ def _friction_over_path(
             return np.abs(friction(xi))
         if reversal is not None:
             return np.asarray(behind * np.sign(xi - reversal) * np.abs(friction(xi)))
-        leading = np.where(xi > leads, friction(xi), 0.0)
-        if course == "leading pair":
-            return np.asarray(leading)
+        alone = xi < change_of_pairs if only_newest else xi > change_of_pairs
+        of_one_pair = np.where(alone, friction(xi), 0.0)
+        if not course.startswith("total"):
+            return np.asarray(of_one_pair)
         of_pair = np.maximum(stiffness(xi), 1e-6 * pair_stiffness_scale)
-        return np.asarray(leading * np.maximum(total(xi), of_pair) / of_pair)
+        return np.asarray(of_one_pair * np.maximum(total(xi), of_pair) / of_pair)
 
     pair_stiffness_scale = mean_of_pairs(stiffness, pitch)
     laws = (friction, stiffness) if course.startswith("total") else (friction,)
     marks = marks_of(pair, laws, low, high)
-    marks = np.append(marks, [leads, pair.geometry.L_XP, *([] if reversal is None else [reversal])])
+    marks = np.append(marks, [change_of_pairs, pair.geometry.L_XP, *([] if reversal is None else [reversal])])
     marks = separate(marks, pair, low, high)
     size = float(np.abs(changed(np.linspace(low, high, 401)[1:-1])).max())
     breaks = np.concatenate([[low], marks, [high]])
