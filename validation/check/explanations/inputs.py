@@ -544,7 +544,7 @@ def _shifts(problem: Problem, variant: Variant) -> list[Choice]:
 
 
 def _number_of_teeth(problem: Problem, variant: Variant) -> list[Choice]:
-    """One tooth or two more or less on a gear; tips and centre distance stay."""
+    """One tooth or two more or less on a gear; tips and centre distance stay, or follow the teeth."""
     choices = []
     for gear in _GEARS:
         for more in (-1, 1, -2, 2):
@@ -555,6 +555,13 @@ def _number_of_teeth(problem: Problem, variant: Variant) -> list[Choice]:
             }  # fmt: skip
             words = f"a {gear} with {count} teeth"
             choices.append(_choice(f"{gear}: {more:+d}", words, _constant(fields)))
+            sizes = dict.fromkeys(("pinion.tip_diameter", "gear.tip_diameter", "centre_distance"))
+            shifts = dict(
+                zip((f"{one}.profile_shift" for one in _GEARS), variant.pair.profile_shifts, strict=True)
+            )
+            fields = {**sizes, **shifts, f"{gear}.teeth": count}
+            words = f"a {gear} with {count} teeth, with the sizes of as many teeth"
+            choices.append(_choice(f"{gear}: {more:+d}, with their size", words, _constant(fields)))
     return choices
 
 
