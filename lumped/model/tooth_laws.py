@@ -26,7 +26,7 @@ from lumped.mesh.unloaded import RELIEF, couplings, reliefs_at
 from lumped.path_of_contact import friction_path_function
 from lumped.quasi_static.contacts import contact_of
 from lumped.quasi_static.elements import MeshElements, at_rest
-from lumped.quasi_static.loaded import StaticMesh, loaded_contact
+from lumped.quasi_static.loaded import static_mesh, touching
 from lumped.quasi_static.tooth_error import relief_record, relief_starts
 from lumped.schema.bodies import bodies_of
 from lumped.schema.meeting_teeth import first_teeth, period_of
@@ -59,12 +59,13 @@ class ToothLaws:
         self.every = every
         g = self.geometry = pair.geometry
         self.flanks = (pair.flank(0), pair.flank(1))
-        self.mesh = StaticMesh(self.healthy)
+        rest = at_rest(pair)
+        self.mesh = static_mesh(rest)
         self.loaded = contact_of(pair).name == "loaded"
         self.elements: MeshElements | None = None
         touched = (g.L_XA, g.L_XD)
         if self.loaded:  # friction also of tip corners beyond A and D, as far as like teeth touch there
-            touched = loaded_contact(at_rest(pair)).stiffness.interval
+            touched = touching(rest).interval
         else:
             self.elements = contact_of(pair).elements(self.healthy)
         self.friction = friction_path_function(self.healthy, interval=touched)
@@ -198,7 +199,13 @@ class ToothLaws:
     def contact_law(self) -> ContactLaw:
         """Return the law of the contact for motions."""
         neighbours = self.loaded and len(self.mesh.neighbours) > 0
-        return self.mesh.law._replace(converged=QUICK, coupled=neighbours, prescribed=not self.loaded)
+        g = self.geometry
+        return self.mesh.law._replace(
+            converged=QUICK,
+            coupled=neighbours,
+            prescribed=not self.loaded,
+            rolling_speed=g.omega_pinion * g.base_radius_pinion,
+        )
 
     def turning(self) -> Records:
         """Return TURNING of both gears, then of each ripple of a torque; the swing is still 0."""

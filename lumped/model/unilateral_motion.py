@@ -34,11 +34,14 @@ from lumped.model.period_closure import Closed, close_period
 from lumped.model.periodic_system import LTVSystem, Supports
 from lumped.model.revolution_motion import Origin, RevolutionMotion, Touch
 from lumped.model.solution import static_deflection
+from lumped.model.static_cycle import StaticCycle
 from lumped.model.steady import UNSTABLE, PeriodicSolution, periodic_solution
 from lumped.model.tooth_laws import ToothLaws
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 
+#: Largest angle of the fastest vibration in a step of the linear motion from which the search starts [rad].
+_START_ANGLE = 2.0
 #: Mismatch at the end of the period, over the size of the unknowns, that counts as closed; the same with
 #: steps twice as long; and what still counts as closed where rounding allows no less.
 _CLOSED = 1e-10
@@ -99,7 +102,9 @@ class Shooting:
     @classmethod
     def of(cls, pair: GearPair, samples: int, supports: Supports) -> Self:
         """Return the search for a motion that repeats with every mesh cycle."""
-        return cls.of_laws(pair, LTVSystem.of(pair, "full", supports=supports), ToothLaws(pair), samples)
+        laws = ToothLaws(pair)
+        cycle = StaticCycle(pair, laws.friction) if laws.loaded else None
+        return cls.of_laws(pair, LTVSystem.of(pair, "full", cycle=cycle, supports=supports), laws, samples)
 
     @classmethod
     def of_laws(cls, pair: GearPair, system: LTVSystem, laws: ToothLaws, samples: int) -> Self:
@@ -395,7 +400,9 @@ def motion_of_shooting(shooting: Shooting, *, settles: bool = True) -> Revolutio
     """
     radius_of_linear = 1.0
     try:
-        linear = periodic_solution(shooting.system, np.zeros(1), estimate_error=False)
+        linear = periodic_solution(
+            shooting.system, np.zeros(1), estimate_error=False, step_angle=_START_ANGLE
+        )
     except NumericalError:  # a multiplier at +1
         start = shooting.at_rest()
     else:
