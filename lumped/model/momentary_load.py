@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -135,6 +135,7 @@ class MomentaryRuns:
         return result
 
 
+@lru_cache(maxsize=4)
 def body_of(system: LTVSystem) -> Body:
     """The gears on their supports as numbers, without torques."""
     g = system.pair.geometry

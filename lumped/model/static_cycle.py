@@ -16,16 +16,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from lumped.mesh.damper import damping_law
 from lumped.model.mesh_cycle import MeshCycle, PairState
-from lumped.path_function import PathFunction
+from lumped.model.tooth_laws import ToothLaws
 from lumped.quasi_static.contacts import contact_of
-from lumped.quasi_static.elements import MeshElements, at_rest
-from lumped.quasi_static.loaded import StaticMesh, Touching, static_mesh, touching
+from lumped.quasi_static.elements import MeshElements
+from lumped.quasi_static.loaded import Touching
 from lumped.schema.bodies import bodies_of
-from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 
-#: Stretches of the mesh cycle, beside those between switches, in each of which the fastest vibration is
-#: sought.
+#: The fastest vibration is sought in this many parts of the mesh cycle.
 _STRETCHES = 16
 
 
@@ -36,33 +34,26 @@ class StaticCycle(MeshCycle):
 
     Parameters
     ----------
-    pair : gear pair with like teeth and loaded contact
-    friction : mu(xi) where a pair can touch
+    laws : laws of the tooth pairs of a gear pair with like teeth and loaded contact
     """
 
-    pair: GearPair
-    friction: PathFunction
+    laws: ToothLaws
 
-    def __init__(self, pair: GearPair, friction: PathFunction) -> None:
+    def __init__(self, laws: ToothLaws) -> None:
         # The base class is frozen.
-        object.__setattr__(self, "geometry", pair.geometry)
-        object.__setattr__(self, "pair", pair)
-        object.__setattr__(self, "friction", friction)
+        object.__setattr__(self, "geometry", laws.geometry)
+        object.__setattr__(self, "laws", laws)
 
     @cached_property
     def elements(self) -> MeshElements:
         """Element laws of one tooth pair."""
-        return contact_of(self.pair).elements(self.pair)
+        return contact_of(self.laws.pair).elements(self.laws.pair)
 
-    @cached_property
-    def mesh(self) -> StaticMesh:
-        """The mesh under the mean torque."""
-        return static_mesh(at_rest(self.pair))
-
-    @cached_property
+    @property
     def touching(self) -> Touching:
         """Where a pair carries load in the static state."""
-        return touching(at_rest(self.pair))
+        assert self.laws.touching is not None
+        return self.laws.touching
 
     @property
     def start(self) -> float:
@@ -77,7 +68,7 @@ class StaticCycle(MeshCycle):
     @property
     def stiffness_scale(self) -> float:
         """Order of magnitude of the stiffness of the mesh, for scaling only [N/m]."""
-        return self.mesh.stiffness.largest
+        return self.laws.mesh.stiffness.largest
 
     @cached_property
     def switch_times(self) -> FloatArray:
@@ -85,13 +76,13 @@ class StaticCycle(MeshCycle):
 
         Kinks where a tip corner begins to touch and where the full damper begins to act are left out.
         """
-        places = [self.touching.contact.ravel(), self.touching.kinks, self.friction.switches]
+        places = [self.touching.contact.ravel(), self.touching.kinks, self.laws.friction.switches]
         return self._times([np.array([self.geometry.L_XP]), *places])
 
     @cached_property
-    def break_phases(self) -> FloatArray:
-        """Phases in [0, 1) that divide the mesh cycle evenly."""
-        return np.asarray(np.arange(_STRETCHES) / _STRETCHES, dtype=np.float64)
+    def breaks(self) -> FloatArray:
+        """The edges, and times that divide the mesh cycle evenly [s]."""
+        return np.union1d(self.edges, np.arange(1, _STRETCHES) * (self.period / _STRETCHES))
 
     @property
     def bends(self) -> FloatArray:
@@ -101,7 +92,7 @@ class StaticCycle(MeshCycle):
     def sample(self, time: ArrayLike, segment: int | NDArray[np.int64] | None = None) -> PairState:
         """Return the coefficients of all pairs at times t [s]; arguments as of ``MeshCycle.sample``."""
         position, place, can_touch = self.places(time, segment)
-        state = self.mesh.pairs_in_contact(place)
+        state = self.laws.mesh.pairs_in_contact(place)
         load, tangent, error, tilt = (
             part.reshape(place.shape) for part in (state.load, state.tangent, state.error, state.tilt)
         )
@@ -115,7 +106,7 @@ class StaticCycle(MeshCycle):
             contact=can_touch,
             stiffness=np.where(carries, tangent, 0.0),
             damping=np.where(carries, self._whole_damper(place) * share * closing, 0.0),
-            friction=np.where(can_touch, self.friction(place), 0.0),
+            friction=np.where(can_touch, self.laws.friction(place), 0.0),
             error=np.where(carries, error, 0.0),
             error_rate=np.where(carries, rolling * speed, 0.0),
             tilt=np.where(carries, tilt, 0.0),
@@ -124,6 +115,6 @@ class StaticCycle(MeshCycle):
 
     def _whole_damper(self, place: FloatArray) -> FloatArray:
         """Damping coefficient of the full damper of pairs at places of any shape [N s/m]."""
-        mass = bodies_of(self.pair).effective_mass
-        damping = damping_law(self.pair.mesh.damping_ratio, self.mesh.stiffness_at, mass)
+        mass = bodies_of(self.laws.pair).effective_mass
+        damping = damping_law(self.laws.pair.mesh.damping_ratio, self.laws.mesh.stiffness_at, mass)
         return np.asarray(damping(place.ravel()).reshape(place.shape), dtype=np.float64)

@@ -11,7 +11,7 @@ Sources: docs/theory/teeth.md, "Tables".
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
+from functools import cached_property, lru_cache, partial
 from typing import NamedTuple, Self
 
 import numpy as np
@@ -26,7 +26,7 @@ from lumped.mesh.unloaded import RELIEF, couplings, reliefs_at
 from lumped.path_of_contact import friction_path_function
 from lumped.quasi_static.contacts import contact_of
 from lumped.quasi_static.elements import MeshElements, at_rest
-from lumped.quasi_static.loaded import static_mesh, touching
+from lumped.quasi_static.loaded import Touching, static_mesh, touching
 from lumped.quasi_static.tooth_error import relief_record, relief_starts
 from lumped.schema.bodies import bodies_of
 from lumped.schema.meeting_teeth import first_teeth, period_of
@@ -63,9 +63,11 @@ class ToothLaws:
         self.mesh = static_mesh(rest)
         self.loaded = contact_of(pair).name == "loaded"
         self.elements: MeshElements | None = None
+        self.touching: Touching | None = None
         touched = (g.L_XA, g.L_XD)
         if self.loaded:  # friction also of tip corners beyond A and D, as far as like teeth touch there
-            touched = touching(rest).interval
+            self.touching = touching(rest)
+            touched = self.touching.interval
         else:
             self.elements = contact_of(pair).elements(self.healthy)
         self.friction = friction_path_function(self.healthy, interval=touched)
@@ -94,6 +96,7 @@ class ToothLaws:
         """Lengths on the base tangents of pinion and gear at positions xi [m]."""
         return xi, self.geometry.L_XY - xi
 
+    @cached_property
     def switches(self) -> FloatArray:
         """Positions at which a law of any kind jumps or has a kink [m]."""
         g = self.geometry
@@ -186,6 +189,11 @@ class ToothLaws:
                 shapes["relief"][..., index] = reliefs_at(relief, length.ravel()).reshape(length.shape)
         return shapes
 
+    @cached_property
+    def flank_ends(self) -> Records:
+        """FLANKS of each kind."""
+        return np.array([self.ends(kind) for kind in range(len(self.faults))], FLANKS)
+
     def ends(self, kind: int) -> tuple[float, ...]:
         """Return FLANKS of a kind.
 
@@ -205,6 +213,12 @@ class ToothLaws:
         behind = flank_end_gaps(beyond, tips[0], *no_edge, *radii[::-1]) / beyond**2
         least = _LEAST_GAP * before.min(), _LEAST_GAP * behind.min()
         return g.L_XY - tips[1], tips[0], g.L_XY, g.undercut_pinion, g.undercut_gear, *least
+
+    @cached_property
+    def teeth(self) -> tuple[Records, Records]:
+        """TOOTH of each tooth of the pinion, and of the gear."""
+        pinion, gear = tooth_errors(self.pair)
+        return _of_teeth(pinion), _of_teeth(gear)
 
     def contact_law(self) -> ContactLaw:
         """Return the law of the contact for motions."""
@@ -258,7 +272,7 @@ class _Steps(NamedTuple):
 def _steps(laws: ToothLaws, largest_step: float, outputs: int, ends: FloatArray) -> _Steps:
     """Steps that end at outputs, at further ``ends`` and wherever a law jumps or has a kink."""
     g = laws.geometry
-    phases = np.mod((laws.switches() - g.L_XA) / g.base_pitch, 1.0)
+    phases = np.mod((laws.switches - g.L_XA) / g.base_pitch, 1.0)
     even = np.arange(outputs + 1) / outputs
     marks = np.unique(np.concatenate([even, phases, ends]))
     nearest = even[np.clip(np.round(marks * outputs).astype(np.int64), 0, outputs)]
@@ -273,8 +287,10 @@ def _steps(laws: ToothLaws, largest_step: float, outputs: int, ends: FloatArray)
     return _Steps(edges, starts)
 
 
-def _quadrature_weights(nodes: FloatArray) -> FloatArray:
+@lru_cache(maxsize=64)
+def _quadrature_weights(places: tuple[float, ...]) -> FloatArray:
     """Weights (nodes,) of the quadrature that is exact for polynomials through the nodes."""
+    nodes = np.array(places)
     moments = 1.0 / np.arange(1.0, nodes.size + 1.0)
     return np.asarray(np.linalg.solve(np.vander(nodes, increasing=True).T, moments), dtype=np.float64)
 
@@ -397,11 +413,11 @@ def mesh_tables(
     no_shapes = np.zeros((*position.shape, 2), TOOTH)  # the numbers of like teeth are 0: no shape acts
     turning = laws.turning()
     angle = 2.0 * np.pi / turning["cycles"] * phase[..., None]
-    pinion, gear = tooth_errors(laws.pair)
+    pinion, gear = laws.teeth
     return MeshTables(
         edges=steps.edges,
         nodes=in_step,
-        weights=_quadrature_weights(in_step),
+        weights=_quadrature_weights(tuple(in_step.tolist())),
         outputs=steps.outputs,
         ahead=ahead,
         position=position,
@@ -409,11 +425,11 @@ def mesh_tables(
         slopes=slopes,
         shape=laws.shapes(position) if unlike else no_shapes,
         shape_slope=_slopes(laws.shapes, position, differences) if unlike else no_shapes,
-        flanks=np.array([laws.ends(kind) for kind in kinds], FLANKS),
+        flanks=laws.flank_ends,
         coupling=_coupling(laws, position),
         kinds=laws.kinds,
-        pinion=_of_teeth(pinion),
-        gear=_of_teeth(gear),
+        pinion=pinion,
+        gear=gear,
         turning=turning,
         turned=np.stack([np.cos(angle), np.sin(angle)], axis=-1),
         cotangent=1.0 / np.tan(g.operating_pressure_angle),

@@ -103,7 +103,7 @@ class Shooting:
     def of(cls, pair: GearPair, samples: int, supports: Supports) -> Self:
         """Return the search for a motion that repeats with every mesh cycle."""
         laws = ToothLaws(pair)
-        cycle = StaticCycle(pair, laws.friction) if laws.loaded else None
+        cycle = StaticCycle(laws) if laws.loaded else None
         return cls.of_laws(pair, LTVSystem.of(pair, "full", cycle=cycle, supports=supports), laws, samples)
 
     @classmethod
@@ -120,15 +120,15 @@ class Shooting:
         """Number of outputs of ``fine`` for one output of ``coarse``."""
         return outputs_for_one(self.samples)
 
-    @cached_property
+    @property
     def to_relative(self) -> FloatArray:
         """Matrix (2m - 2, 2m) from states to states without the common rotation."""
-        return np.asarray(np.kron(np.eye(2), self.system.supports.relative), dtype=np.float64)
+        return self.system.supports.to_relative_states
 
-    @cached_property
+    @property
     def from_relative(self) -> FloatArray:
         """Matrix (2m, 2m - 2) back to all states; the common rotation becomes 0."""
-        return np.asarray(np.kron(np.eye(2), self.system.supports.back), dtype=np.float64)
+        return self.system.supports.from_relative_states
 
     @cached_property
     def to_mismatch(self) -> FloatArray:
