@@ -25,6 +25,8 @@ from lumped.typing import FloatArray
 
 #: The fastest vibration is sought in this many parts of the mesh cycle.
 _STRETCHES = 16
+#: Distance of the differences for the slope of a relief, over the base pitch.
+_DIFFERENCE = 1e-6
 
 
 class StaticCycle(MeshCycle):
@@ -98,7 +100,8 @@ class StaticCycle(MeshCycle):
         )
         carries = can_touch & (load > 0.0)
         closing = 1.0 - state.contact["gap_by_approach"].reshape(place.shape)
-        rolling = state.contact["gap_by_position"].reshape(place.shape) / closing
+        corner_slope = state.contact["gap_by_position"].reshape(place.shape)
+        rolling = (corner_slope + self._relief_slope(place)) / closing
         share = state.contact["damper_share"].reshape(place.shape)
         speed = self.geometry.omega_pinion * self.geometry.base_radius_pinion
         return PairState(
@@ -112,6 +115,12 @@ class StaticCycle(MeshCycle):
             tilt=np.where(carries, tilt, 0.0),
             closing=np.where(carries, closing, 0.0),
         )
+
+    def _relief_slope(self, place: FloatArray) -> FloatArray:
+        """Slope over xi of the gap by reliefs, of pairs at places of any shape [-]."""
+        distance = _DIFFERENCE * self.geometry.base_pitch
+        behind, ahead = (self.laws.gap_of_like_teeth(place + way) for way in (-distance, distance))
+        return np.asarray((ahead - behind) / (2.0 * distance), dtype=np.float64)
 
     def _whole_damper(self, place: FloatArray) -> FloatArray:
         """Damping coefficient of the full damper of pairs at places of any shape [N s/m]."""

@@ -23,6 +23,7 @@ import numpy as np
 
 from lumped.errors import NumericalError
 from lumped.mesh.motion import Run
+from lumped.model.mesh_cycle import MeshCycle
 from lumped.model.momentary_load import (
     MomentaryRuns,
     mean_powers,
@@ -42,6 +43,8 @@ from lumped.typing import BoolArray, FloatArray, IntArray
 
 #: Largest angle of the fastest vibration in a step of the linear motion from which the search starts [rad].
 _START_ANGLE = 2.0
+#: Most steps of Broyden's method, with long integration steps, from the rough linear motion.
+_FEW_STEPS = 6
 #: Mismatch at the end of the period, over the size of the unknowns, that counts as closed; the same with
 #: steps twice as long; and what still counts as closed where rounding allows no less.
 _CLOSED = 1e-10
@@ -262,11 +265,18 @@ class Shooting:
         growth = np.linalg.eigvals(self._free[np.ix_(still, still)]).real.max(initial=-np.inf)
         return max(float(multipliers.max()), math.exp(growth * self.cycles * self.system.period))
 
-    def closed(self, unknowns: FloatArray, slopes: FloatArray, accepted: float = _ACCEPTED) -> Closed[Run]:
+    def closed(
+        self, unknowns: FloatArray, slopes: FloatArray, accepted: float = _ACCEPTED, most: int = 40
+    ) -> Closed[Run]:
         """Close the period by Broyden's method, from unknowns and derivatives that may be rough.
 
         The first steps run with integration steps twice as long, the last ones with those of the motion.
-        ``accepted`` is the largest mismatch of the result.
+
+        Parameters
+        ----------
+        unknowns, slopes : start, and derivatives of the mismatch by the unknowns, both over their scales
+        accepted : largest mismatch of the result
+        most : most steps of Broyden's method with the long integration steps
 
         Raises
         ------
@@ -281,7 +291,7 @@ class Shooting:
 
             return over_period
 
-        rough = close_period(over(self.coarse), unknowns, sizes, slopes, closed=_NEARLY_CLOSED)
+        rough = close_period(over(self.coarse), unknowns, sizes, slopes, closed=_NEARLY_CLOSED, most=most)
         if rough.mismatch > _NEARLY_CLOSED:
             raise NumericalError("No periodic motion that follows the momentary load is near this one.")
         fine = close_period(over(self.fine), rough.unknowns, sizes, rough.derivatives, closed=_CLOSED)
@@ -326,6 +336,26 @@ class Shooting:
             spectral_radius=radius,
             origin=Origin.LINEAR,
         )
+
+    def close_by(self) -> RevolutionMotion | None:
+        """Return the motion that few steps of Broyden's method reach from a rough linear motion, or None.
+
+        Where few steps suffice, the exact linear motion leads to the same motion. Where contact is lost for
+        long, motions coexist, and many steps may lead to any of them.
+        """
+        with suppress(NumericalError):
+            linear = periodic_solution(
+                self.system, np.zeros(1), estimate_error=False, step_angle=_START_ANGLE
+            )
+            start = self.unknowns(linear.states[0], linear.pinion_torque, linear.brake_torque)
+            closed = self.closed(start, self.linear_derivatives(linear, start), most=_FEW_STEPS)
+            return self.motion(closed, linear.spectral_radius)
+        return None
+
+    def with_fitted_laws(self) -> Shooting:
+        """Return the same search with the fitted laws of the linear form, which its exact motion needs."""
+        system = self.system
+        return replace(self, system=replace(system, cycle=MeshCycle.of(system.pair)))
 
     def near(self, start: FloatArray, linear: PeriodicSolution) -> tuple[Closed[Run] | None, float]:
         """Close the period near a linear motion; return the result, or None, and a spectral radius near
@@ -450,11 +480,14 @@ def motion_of_shooting(shooting: Shooting, *, settles: bool = True) -> Revolutio
     ------
     NumericalError : no such motion is found
     """
+    if isinstance(shooting.system.cycle, StaticCycle):
+        close = shooting.close_by()
+        if close is not None and (close.spectral_radius <= UNSTABLE or not settles):
+            return close
+        shooting = shooting.with_fitted_laws()
     radius_of_linear = 1.0
     try:
-        linear = periodic_solution(
-            shooting.system, np.zeros(1), estimate_error=False, step_angle=_START_ANGLE
-        )
+        linear = periodic_solution(shooting.system, np.zeros(1), estimate_error=False)
     except NumericalError:  # a multiplier at +1
         start = shooting.at_rest()
     else:

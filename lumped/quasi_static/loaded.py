@@ -333,11 +333,12 @@ class StaticMesh:
     def pairs_in_contact(self, xi: FloatArray) -> StaticPair:
         """Return pairs at xi (pairs, n) [m], whole pitches apart in each column, in static equilibrium.
 
-        The result has pairs n entries, those of the first pair first.
+        The result has pairs n entries, those of the first pair first. The middle pair of a column must have
+        all pairs that carry load within reach.
         """
         contact = np.zeros(xi.size, CONTACT)
         phases = self.phases(xi.ravel())
-        approach = np.tile(self.approach(xi[0]), len(xi))
+        approach = np.tile(self.approach(xi[len(xi) // 2]), len(xi))
         middle_contacts(approach, phases, self.flanks, self.law, contact, workspace(phases))
         return StaticPair(approach, contact)
 
