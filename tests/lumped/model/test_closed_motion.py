@@ -10,6 +10,7 @@ from lumped.model.momentary_load import body_of
 from lumped.model.unilateral_motion import Shooting, motion_of_shooting
 from lumped.schema.files import load_gear_pair
 from tests.unlike_pairs import unlike_pair
+from validation.exchange.new_pair_file import new_pair
 
 #: Pairs whose motion repeats with the mesh cycle: with contact lost, always pushing, with neighbours that
 #: move each other, with large profile shifts, with relief.
@@ -104,3 +105,19 @@ def test_terms_that_are_not_zero_are_the_whole_matrix(supports):
     assert body.states.shape[1] == (
         2 if supports == "springs" else np.count_nonzero(system.constant[m:], 1).max()
     )
+
+
+def test_where_motions_coexist_the_search_starts_from_the_exact_linear_motion():
+    """Near resonance 23/37 has two stable motions: of one mesh cycle, and of three with four times the swing.
+
+    To which of them a search comes depends on the last digits of its start. From the rough linear motion few
+    steps do not suffice here, so that only the exact one decides.
+    """
+    pair = new_pair("23/37", 3.0, 25.0, 22881.246, 120.0).with_(damping=0.005)
+    shooting = Shooting.of(pair, 64, "springs")
+    assert shooting.close_by() is None
+    motion = motion_of_shooting(shooting)
+    exact = motion_of_shooting(shooting.with_fitted_laws())
+    assert motion.spectral_radius < 1.0
+    assert motion.period == exact.period
+    np.testing.assert_array_equal(motion.states, exact.states)
