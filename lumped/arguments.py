@@ -152,6 +152,8 @@ def file_path(field: str, value: object) -> Path:
 
 def _real(value: object) -> FloatArray | None:
     """Return a value as an array of real numbers; None where the value has anything else."""
+    if isinstance(value, np.ndarray) and value.dtype == np.float64:  # laws are evaluated very often
+        return np.asarray(value)
     try:
         array: NDArray[Any] = np.asarray(
             list(value) if isinstance(value, (Iterator, Set, ValuesView)) else value

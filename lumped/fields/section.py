@@ -5,6 +5,7 @@ from __future__ import annotations
 import unicodedata
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Annotated, Any
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, GetCoreSchemaHandler
@@ -34,15 +35,23 @@ class Section(BaseModel):
     def to_mapping(self) -> dict[str, Any]:
         """Return nested plain data in file units; None is left out, as a file cannot say it."""
         result: dict[str, Any] = {}
-        for name, info in type(self).model_fields.items():
+        for name, unit in _stated_units(type(self)):
             value = getattr(self, name)
-            unit = next((m.unit for m in info.metadata if isinstance(m, Quantity)), None)
             if isinstance(value, tuple):
                 if value:  # an empty list says nothing
                     result[name] = [_plain(one, unit) for one in value]
             elif value is not None:
                 result[name] = _plain(value, unit)
         return result
+
+
+@lru_cache(maxsize=256)
+def _stated_units(section: type[Section]) -> tuple[tuple[str, str | None], ...]:
+    """Name of each field of a section, and its stated unit; None: the field has no unit."""
+    return tuple(
+        (name, next((marker.unit for marker in info.metadata if isinstance(marker, Quantity)), None))
+        for name, info in section.model_fields.items()
+    )
 
 
 def _plain(value: Any, unit: str | None) -> Any:

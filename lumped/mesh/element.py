@@ -18,7 +18,7 @@ import math
 
 from lumped.compiler import called, inlined, inlined_optimised
 from lumped.mesh.records import ContactLaw, Record, Records
-from lumped.mesh.tip_corners import end_of_flanks, flank_end_gap, start_of_flanks
+from lumped.mesh.tip_corners import end_of_flanks, gap_unless_inside, start_of_flanks
 from lumped.typing import FloatArray
 
 #: Most steps of an iteration.
@@ -28,8 +28,8 @@ _MOST_STEPS = 200
 @inlined
 def write_gap(pair: Record, approach: float, line: Record, law: ContactLaw, contact: Record) -> None:
     """Write gap, slopes of the gap, tilt and compression of a pair at an approach, tip corners included."""
-    start = flank_end_gap(start_of_flanks(pair, approach, line, law))
-    end = flank_end_gap(end_of_flanks(pair, approach, line, law))
+    start = gap_unless_inside(start_of_flanks(pair, approach, line, law))
+    end = gap_unless_inside(end_of_flanks(pair, approach, line, law))
     contact.gap = pair.gap
     contact.gap_by_position = pair.gap_slope
     contact.gap_by_approach = 0.0
@@ -99,18 +99,20 @@ def write_load_equations(
 ) -> None:
     """Write matrix and residuals of a Newton step of ``coupled_loads``.
 
-    ``tangent`` gets the right side of the same equations for a compression that all pairs share.
+    ``tangent`` gets the right side of the same equations for a compression that all pairs share. A pair that
+    is apart has no equation: its pivot is 0, and so are both right sides.
     """
     count = pairs.size
     for i in range(count):
         contact = contacts[i]
+        contact.residual = 0.0
+        contact.tangent = 0.0
+        matrix[i, i] = 0.0
+        if contact.load == 0.0 and contact.compression <= law.apart_below:
+            continue
         compression = contact.compression
         for j in range(count):
             compression -= coupling[i, j] * contacts[j].load
-            matrix[i, j] = 0.0
-        matrix[i, i] = 1.0
-        contact.residual = 0.0
-        contact.tangent = 0.0
         if compression > 0.0 or contact.load > 0.0:
             secant, slope = compliances(contact.load, pairs[i].stiffness, law)
             for j in range(count):
@@ -156,12 +158,16 @@ def eliminate(matrix: FloatArray, contacts: Records) -> None:
     """Solve the equations for both right sides ``residual`` and ``tangent``, in place.
 
     Each field has a right side on entry and the solution on return: ``residual`` then is the change of the
-    load. Gauss elimination needs no pivots: the matrix of the pairs in contact is positive definite, and
-    every other row is one of the unit matrix.
+    load. Gauss elimination needs no pivots: the matrix of the pairs in contact is positive definite. Rows and
+    columns of pairs that are apart, whose pivot is 0, are passed over.
     """
     count = contacts.size
     for i in range(count):
+        if matrix[i, i] == 0.0:
+            continue
         for row in range(i + 1, count):
+            if matrix[row, row] == 0.0:
+                continue
             factor = matrix[row, i] / matrix[i, i]
             if factor != 0.0:
                 for column in range(i + 1, count):
@@ -169,6 +175,8 @@ def eliminate(matrix: FloatArray, contacts: Records) -> None:
                 contacts[row].residual -= factor * contacts[i].residual
                 contacts[row].tangent -= factor * contacts[i].tangent
     for i in range(count - 1, -1, -1):
+        if matrix[i, i] == 0.0:
+            continue
         for column in range(i + 1, count):
             contacts[i].residual -= matrix[i, column] * contacts[column].residual
             contacts[i].tangent -= matrix[i, column] * contacts[column].tangent

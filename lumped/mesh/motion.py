@@ -17,7 +17,7 @@ from lumped.mesh.element import write_elastic_loads
 from lumped.mesh.records import Record, Records, record
 from lumped.mesh.tables import CyclePairs, MeshTables, fill_steps
 from lumped.mesh.unilateral_force import MeshForce, unilateral_force
-from lumped.typing import FloatArray
+from lumped.typing import FloatArray, IntArray
 
 #: A harmonic of a torque: amplitude cos(angle t/T_m + start).
 RIPPLE = record(
@@ -42,7 +42,8 @@ class Body(NamedTuple):
 
     Attributes
     ----------
-    constant : (m, 2m)
+    constant : (m, terms) coefficients of each acceleration, without those that are 0 in all rows
+    states : (m, terms) the place in z, z' to which each coefficient belongs
     torque : (m,) acceleration by the mean torques
     deflection : (m,) u, with delta = u . z
     per_normal, per_friction_force, per_friction_moment, per_separating : (m,) acceleration per unit of each
@@ -57,6 +58,7 @@ class Body(NamedTuple):
     """
 
     constant: FloatArray
+    states: IntArray
     torque: FloatArray
     deflection: FloatArray
     per_normal: FloatArray
@@ -112,8 +114,8 @@ def accelerate(state: FloatArray, force: MeshForce, line: Record, body: Body, ra
         acceleration += force.friction_force * body.per_friction_force[j]
         acceleration += force.friction_moment * body.per_friction_moment[j]
         acceleration += force.separating * body.per_separating[j]
-        for i in range(2 * m):
-            acceleration += body.constant[j, i] * state[i]
+        for term in range(body.states.shape[1]):
+            acceleration += body.constant[j, term] * state[body.states[j, term]]
         rate[j] = state[m + j]
         rate[m + j] = acceleration
 

@@ -221,6 +221,14 @@ def flank_end_gap(end: FlankEnd) -> FlankEndGap:
     return FlankEndGap(gap, slope, 0.0, tilt)
 
 
+@inlined
+def gap_unless_inside(end: FlankEnd) -> FlankEndGap:
+    """Gap as of ``flank_end_gap``, without a call where neither tip corner nor edge is at the contact."""
+    if end.beyond_tip <= 0.0 and (end.edge <= 0.0 or end.beyond_edge <= 0.0):
+        return FlankEndGap(0.0, 0.0, 0.0, 0.0)
+    return flank_end_gap(end)
+
+
 @called
 def tip_minus_edge(end: FlankEnd) -> float:
     """Positive where the tip corner has the larger gap of tip corner and edge; 0 where they exchange [m].

@@ -49,6 +49,21 @@ class DamperPower(NamedTuple):
     at_rest: FloatArray
 
 
+class PairPlaces(NamedTuple):
+    """Where all pairs are at k times; each array (pairs, k).
+
+    Attributes
+    ----------
+    position : xi_i [m]
+    place : the same, but inside the smooth segment: at the ends of the segment by a rounding error [m]
+    contact : whether the pair is where it can touch
+    """
+
+    position: FloatArray
+    place: FloatArray
+    contact: BoolArray
+
+
 @dataclass(frozen=True)
 class PairState:
     """Coefficients of every tooth pair; each array (pairs, k), zero for a pair out of contact.
@@ -224,16 +239,14 @@ class MeshCycle(DisplayedResult):
         place = self.offsets[:, None] + middle
         return np.asarray((place >= self.start) & (place <= self.end))
 
-    def sample(self, time: ArrayLike, segment: int | NDArray[np.int64] | None = None) -> PairState:
-        """Return the coefficients of all pairs at times t [s], any number of cycles.
+    @property
+    def stiffness_scale(self) -> float:
+        """Order of magnitude of the stiffness of the mesh, for scaling only [N/m]."""
+        k = self.elements.stiffness
+        return max(float(k(k.breaks[:-1]).max()), k.mean())
 
-        Parameters
-        ----------
-        time : (k,) times [s]
-        segment : smooth segment of all times, or of each time (k,). At the ends of the segment the values are
-            limits from inside the segment. By default the segment in which each time lies; a switch belongs
-            to the segment behind it
-        """
+    def places(self, time: ArrayLike, segment: int | NDArray[np.int64] | None = None) -> PairPlaces:
+        """Return where all pairs are at times t [s]; arguments as of ``sample``."""
         g = self.geometry
         t = np.atleast_1d(np.asarray(time, dtype=float))
         if segment is None:
@@ -250,9 +263,21 @@ class MeshCycle(DisplayedResult):
         low = speed * self.edges[index] + inside
         high = speed * self.edges[index + 1] - inside
         shift = np.clip(speed * tau, low, high)
-        contact = np.take(self._contact, index, axis=1)
-        place = self.offsets[:, None] + shift
-        position = self.offsets[:, None] + speed * tau
+        offsets = self.offsets[:, None]
+        return PairPlaces(offsets + speed * tau, offsets + shift, np.take(self._contact, index, axis=1))
+
+    def sample(self, time: ArrayLike, segment: int | NDArray[np.int64] | None = None) -> PairState:
+        """Return the coefficients of all pairs at times t [s], any number of cycles.
+
+        Parameters
+        ----------
+        time : (k,) times [s]
+        segment : smooth segment of all times, or of each time (k,). At the ends of the segment the values are
+            limits from inside the segment. By default the segment in which each time lies; a switch belongs
+            to the segment behind it
+        """
+        position, place, contact = self.places(time, segment)
+        speed = self.geometry.omega_pinion * self.geometry.base_radius_pinion
         e = self.elements
         return PairState(
             position=position,

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from lumped.model.propagation import fastest_frequency
 from lumped.model.swing import moments, swinging
 from lumped.model.tooth_laws import ToothLaws, mesh_tables, torque_ripples
 from lumped.schema.pair import GearPair
-from lumped.typing import FloatArray
+from lumped.typing import FloatArray, IntArray
 
 #: Steps in a period of the fastest vibration, and least steps in a mesh cycle. With 256 steps a motion with
 #: contact loss errs by 0.1 %, because pairs touch inside steps.
@@ -135,14 +135,17 @@ class MomentaryRuns:
         return result
 
 
+@lru_cache(maxsize=4)
 def body_of(system: LTVSystem) -> Body:
     """The gears on their supports as numbers, without torques."""
     g = system.pair.geometry
     m = len(system.coordinates)
     rates = system.gears
+    constant, states = non_zero_terms(system.constant[m:])
     per_normal, per_friction_force, per_friction_moment = np.ascontiguousarray(system.per_load)
     return Body(
-        constant=np.ascontiguousarray(system.constant[m:]),
+        constant=constant,
+        states=states,
         torque=np.zeros(m),
         deflection=np.ascontiguousarray(system.deflection),
         per_normal=per_normal,
@@ -158,6 +161,17 @@ def body_of(system: LTVSystem) -> Body:
         speeds=np.array([g.omega_pinion, g.omega_gear]),
         line=g.L_XY,
     )
+
+
+def non_zero_terms(matrix: FloatArray) -> tuple[FloatArray, IntArray]:
+    """Return the entries of each row that are not 0, and their columns; both (rows, most in a row).
+
+    Rows with fewer such entries have zeros too. On springs two of twelve entries are left.
+    """
+    is_zero = matrix == 0.0
+    most = matrix.shape[1] - int(is_zero.sum(axis=1).min())
+    columns = np.ascontiguousarray(np.sort(np.argsort(is_zero, axis=1, kind="stable")[:, :most], axis=1))
+    return np.take_along_axis(matrix, columns, axis=1), columns
 
 
 def _power_matrix(system: LTVSystem, place: str) -> FloatArray:

@@ -91,9 +91,8 @@ def balanced_start(system: LTVSystem, phi: FloatArray, forced: FloatArray) -> tu
 
 def _static_deflection(system: LTVSystem) -> float:
     """Order of magnitude of the static deflection [m], for scaling only."""
-    k = system.cycle.elements.stiffness
     load = system.pinion_torque / abs(float(system.structure.deflection[0]))
-    return load / max(float(k(k.breaks[:-1]).max()), k.mean())
+    return load / system.cycle.stiffness_scale
 
 
 @dataclass(frozen=True, eq=False)

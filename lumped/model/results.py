@@ -228,17 +228,21 @@ def corner_force(values: Mapping[str, FloatArray], pairs: PairState) -> FloatArr
     return np.asarray((tilt * values["normal_load"]).sum(axis=0), dtype=np.float64)
 
 
-def peak_to_peak(time: FloatArray, values: FloatArray, rates: FloatArray) -> float:
-    """Largest minus least value, with the extremes between two samples.
+def peaks_to_peaks(time: FloatArray, values: FloatArray, rates: FloatArray) -> FloatArray:
+    """Largest minus least value of each row, with the extremes between two samples, (n,).
 
     Between two samples the motion is the cubic through their values and rates. The error of the cubic falls
     with the fourth power of the interval; where a force jumps inside the interval, with the square.
+
+    Parameters
+    ----------
+    time, values, rates : (k,), (n, k), (n, k)
     """
     step = np.diff(time)
     rise = np.diff(values)
-    start = rates[:-1] * step
-    end = rates[1:] * step
-    # values[j] + start s + square s^2 + cube s^3 for s from 0 to 1
+    start = rates[:, :-1] * step
+    end = rates[:, 1:] * step
+    # values[:, j] + start s + square s^2 + cube s^3 for s from 0 to 1
     square = 3.0 * rise - 2.0 * start - end
     cube = start + end - 2.0 * rise
     root = np.sqrt(np.maximum(square**2 - 3.0 * cube * start, 0.0))
@@ -246,8 +250,15 @@ def peak_to_peak(time: FloatArray, values: FloatArray, rates: FloatArray) -> flo
     with np.errstate(divide="ignore", invalid="ignore"):
         places = np.stack([sum_of / (3.0 * cube), start / sum_of])
     places = np.clip(np.nan_to_num(places, nan=0.0, posinf=0.0, neginf=0.0), 0.0, 1.0)
-    between = values[:-1] + places * (start + places * (square + places * cube))
-    return float(max(values.max(), between.max()) - min(values.min(), between.min()))
+    between = values[:, :-1] + places * (start + places * (square + places * cube))
+    largest = np.maximum(values.max(axis=1), between.max(axis=(0, 2)))
+    least = np.minimum(values.min(axis=1), between.min(axis=(0, 2)))
+    return np.asarray(largest - least, dtype=np.float64)
+
+
+def peak_to_peak(time: FloatArray, values: FloatArray, rates: FloatArray) -> float:
+    """Largest minus least value, with the extremes between two samples, see ``peaks_to_peaks``."""
+    return float(peaks_to_peaks(time, values[None], rates[None])[0])
 
 
 def cycle_peak_to_peak(run: xr.Dataset, name: str, period: float | None = None) -> float:

@@ -19,7 +19,7 @@ from lumped.mesh.tables import MeshTables
 from lumped.model.linear_or_unilateral import ContactArgument
 from lumped.model.mesh_cycle import PairState
 from lumped.model.periodic_system import LTVSystem
-from lumped.model.results import PlainMotion, labelled, peak_to_peak, response
+from lumped.model.results import PlainMotion, labelled, peaks_to_peaks, response
 from lumped.model.swing import swing
 from lumped.quasi_static.contacts import contact_of
 from lumped.schema.meeting_teeth import teeth_of_pairs
@@ -254,7 +254,11 @@ def _of_period(motion: RevolutionMotion, values: dict[str, FloatArray]) -> dict[
         "error_estimate": motion.error,
     }
     closed = np.append(motion.time, motion.period * motion.system.period)
-    for name in ("dte", "x_p", "x_g", "y_p", "y_g"):
-        one, rate = (np.append(values[key], values[key][0]) for key in (name, f"{name}_dot"))
-        attributes[f"{name}_peak_to_peak"] = peak_to_peak(closed, one, rate) + motion.between.get(name, 0.0)
+    names = ("dte", "x_p", "x_g", "y_p", "y_g")
+    periods, rates = (
+        np.array([np.append(values[key], values[key][0]) for key in keys])
+        for keys in (names, [f"{name}_dot" for name in names])
+    )
+    for name, difference in zip(names, peaks_to_peaks(closed, periods, rates).tolist(), strict=True):
+        attributes[f"{name}_peak_to_peak"] = difference + motion.between.get(name, 0.0)
     return attributes

@@ -169,8 +169,7 @@ def relative_spectral_radius(system: LTVSystem, phi: FloatArray) -> float:
     Nothing depends on the common rotation. With the matrix S to coordinates without the common rotation,
     S phi = phi_rel S, and any right inverse R of S gives phi_rel = S phi R.
     """
-    twice = np.eye(2)
-    relative = np.kron(twice, system.supports.relative) @ phi @ np.kron(twice, system.supports.back)
+    relative = system.supports.to_relative_states @ phi @ system.supports.from_relative_states
     return float(np.abs(np.linalg.eigvals(relative)).max())
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
@@ -77,6 +78,16 @@ class Supports(ABC):
     common: FloatArray
     common_weights: FloatArray
     units: FloatArray
+
+    @cached_property
+    def to_relative_states(self) -> FloatArray:
+        """Matrix (2m - 2, 2m) from states z, z' to states without the common rotation."""
+        return np.asarray(np.kron(np.eye(2), self.relative), dtype=np.float64)
+
+    @cached_property
+    def from_relative_states(self) -> FloatArray:
+        """Matrix (2m, 2m - 2) back to all states; the common rotation becomes 0."""
+        return np.asarray(np.kron(np.eye(2), self.back), dtype=np.float64)
 
     @abstractmethod
     def coordinates(self, form: Form) -> Coordinates:

@@ -11,8 +11,8 @@ Sources: docs/theory/teeth.md, "Tables".
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
-from typing import NamedTuple
+from functools import cached_property, lru_cache, partial
+from typing import NamedTuple, Self
 
 import numpy as np
 
@@ -26,7 +26,7 @@ from lumped.mesh.unloaded import RELIEF, couplings, reliefs_at
 from lumped.path_of_contact import friction_path_function
 from lumped.quasi_static.contacts import contact_of
 from lumped.quasi_static.elements import MeshElements, at_rest
-from lumped.quasi_static.loaded import StaticMesh, loaded_contact
+from lumped.quasi_static.loaded import Touching, static_mesh, touching
 from lumped.quasi_static.tooth_error import relief_record, relief_starts
 from lumped.schema.bodies import bodies_of
 from lumped.schema.meeting_teeth import first_teeth, period_of
@@ -59,12 +59,15 @@ class ToothLaws:
         self.every = every
         g = self.geometry = pair.geometry
         self.flanks = (pair.flank(0), pair.flank(1))
-        self.mesh = StaticMesh(self.healthy)
+        rest = at_rest(pair)
+        self.mesh = static_mesh(rest)
         self.loaded = contact_of(pair).name == "loaded"
         self.elements: MeshElements | None = None
+        self.touching: Touching | None = None
         touched = (g.L_XA, g.L_XD)
         if self.loaded:  # friction also of tip corners beyond A and D, as far as like teeth touch there
-            touched = loaded_contact(at_rest(pair)).stiffness.interval
+            self.touching = touching(rest)
+            touched = self.touching.interval
         else:
             self.elements = contact_of(pair).elements(self.healthy)
         self.friction = friction_path_function(self.healthy, interval=touched)
@@ -93,6 +96,7 @@ class ToothLaws:
         """Lengths on the base tangents of pinion and gear at positions xi [m]."""
         return xi, self.geometry.L_XY - xi
 
+    @cached_property
     def switches(self) -> FloatArray:
         """Positions at which a law of any kind jumps or has a kink [m]."""
         g = self.geometry
@@ -124,6 +128,16 @@ class ToothLaws:
             else:
                 starts.append([flank.length(relief.start_roll_angle)])
         return starts
+
+    def gap_of_like_teeth(self, xi: FloatArray) -> FloatArray:
+        """Return the gap of like teeth at positions xi of any shape, without tip corners [m]."""
+        if self.elements is not None:
+            return self.elements.error(xi)
+        reliefs = self.mesh.unloaded.reliefs
+        if reliefs.size == 0:
+            return np.zeros(xi.shape)
+        on_flanks = np.clip(xi, self.geometry.L_XA, self.geometry.L_XD)
+        return np.asarray(reliefs_at(reliefs, on_flanks.ravel()).reshape(xi.shape), dtype=np.float64)
 
     def of_kind(self, kind: int, xi: FloatArray) -> Records:
         """Return LAWS of a kind at positions xi of any shape [m]."""
@@ -175,6 +189,11 @@ class ToothLaws:
                 shapes["relief"][..., index] = reliefs_at(relief, length.ravel()).reshape(length.shape)
         return shapes
 
+    @cached_property
+    def flank_ends(self) -> Records:
+        """FLANKS of each kind."""
+        return np.array([self.ends(kind) for kind in range(len(self.faults))], FLANKS)
+
     def ends(self, kind: int) -> tuple[float, ...]:
         """Return FLANKS of a kind.
 
@@ -195,10 +214,22 @@ class ToothLaws:
         least = _LEAST_GAP * before.min(), _LEAST_GAP * behind.min()
         return g.L_XY - tips[1], tips[0], g.L_XY, g.undercut_pinion, g.undercut_gear, *least
 
+    @cached_property
+    def teeth(self) -> tuple[Records, Records]:
+        """TOOTH of each tooth of the pinion, and of the gear."""
+        pinion, gear = tooth_errors(self.pair)
+        return _of_teeth(pinion), _of_teeth(gear)
+
     def contact_law(self) -> ContactLaw:
         """Return the law of the contact for motions."""
         neighbours = self.loaded and len(self.mesh.neighbours) > 0
-        return self.mesh.law._replace(converged=QUICK, coupled=neighbours, prescribed=not self.loaded)
+        g = self.geometry
+        return self.mesh.law._replace(
+            converged=QUICK,
+            coupled=neighbours,
+            prescribed=not self.loaded,
+            rolling_speed=g.omega_pinion * g.base_radius_pinion,
+        )
 
     def turning(self) -> Records:
         """Return TURNING of both gears, then of each ripple of a torque; the swing is still 0."""
@@ -241,7 +272,7 @@ class _Steps(NamedTuple):
 def _steps(laws: ToothLaws, largest_step: float, outputs: int, ends: FloatArray) -> _Steps:
     """Steps that end at outputs, at further ``ends`` and wherever a law jumps or has a kink."""
     g = laws.geometry
-    phases = np.mod((laws.switches() - g.L_XA) / g.base_pitch, 1.0)
+    phases = np.mod((laws.switches - g.L_XA) / g.base_pitch, 1.0)
     even = np.arange(outputs + 1) / outputs
     marks = np.unique(np.concatenate([even, phases, ends]))
     nearest = even[np.clip(np.round(marks * outputs).astype(np.int64), 0, outputs)]
@@ -256,37 +287,71 @@ def _steps(laws: ToothLaws, largest_step: float, outputs: int, ends: FloatArray)
     return _Steps(edges, starts)
 
 
-def _quadrature_weights(nodes: FloatArray) -> FloatArray:
+@lru_cache(maxsize=64)
+def _quadrature_weights(places: tuple[float, ...]) -> FloatArray:
     """Weights (nodes,) of the quadrature that is exact for polynomials through the nodes."""
+    nodes = np.array(places)
     moments = 1.0 / np.arange(1.0, nodes.size + 1.0)
     return np.asarray(np.linalg.solve(np.vander(nodes, increasing=True).T, moments), dtype=np.float64)
 
 
-def _slopes(
-    function: Callable[[FloatArray], Records], position: FloatArray, nodes: FloatArray, distance: float
-) -> Records:
-    """Slope over xi of every field of a function, by differences of second order.
+class _Differences(NamedTuple):
+    """Differences of second order for slopes at the nodes of steps.
 
-    At the ends of a step the differences are one-sided, so that they do not look beyond the step.
+    At the ends of a step they are one-sided, so that they do not look beyond the step.
 
-    Parameters
+    Attributes
     ----------
-    function : positions [m] -> records of the same shape
-    position : (steps, nodes, pairs) [m]
-    nodes : places in a step
-    distance : between the positions of a difference [m]
+    offsets : (3, nodes) from a node to the positions of a difference [m]
+    weights : (3, nodes) of the values there [1/m]
     """
-    one_sided = np.array([-1.5, 2.0, -0.5]) / distance
-    central = np.array([-0.5, 0.0, 0.5]) / distance
-    sense = np.where(nodes < 1.0, 1.0, -1.0)
-    inside = (nodes > 0.0) & (nodes < 1.0)
-    offsets = np.where(inside, -distance, 0.0) + np.multiply.outer([0.0, distance, 2.0 * distance], sense)
-    weights = np.where(inside, central[:, None], one_sided[:, None] * sense)
-    values = function(position + offsets[:, None, :, None])
+
+    offsets: FloatArray
+    weights: FloatArray
+
+    @classmethod
+    def at_nodes(cls, nodes: FloatArray, distance: float) -> Self:
+        """Return the differences at nodes, places in a step from 0 to 1, over a distance [m]."""
+        one_sided = np.array([-1.5, 2.0, -0.5]) / distance
+        central = np.array([-0.5, 0.0, 0.5]) / distance
+        sense = np.where(nodes < 1.0, 1.0, -1.0)
+        inside = (nodes > 0.0) & (nodes < 1.0)
+        offsets = np.where(inside, -distance, 0.0) + np.multiply.outer([0.0, distance, 2.0 * distance], sense)
+        return cls(offsets, np.where(inside, central[:, None], one_sided[:, None] * sense))
+
+    def positions(self, position: FloatArray) -> FloatArray:
+        """Return the positions (3, steps, nodes, pairs) of the differences at (steps, nodes, pairs) [m]."""
+        return np.asarray(position + self.offsets[:, None, :, None], dtype=np.float64)
+
+    def slope(self, values: FloatArray) -> FloatArray:
+        """Return the slope (steps, nodes, pairs, ...) of values (3, steps, nodes, pairs, ...) there."""
+        shape = (1, self.weights.shape[1], 1) + (1,) * (values.ndim - 4)
+        return sum((w.reshape(shape) * one for w, one in zip(self.weights, values, strict=True)), np.zeros(1))
+
+
+def _slopes(
+    function: Callable[[FloatArray], Records], position: FloatArray, differences: _Differences
+) -> Records:
+    """Slope over xi of every field of a function: positions [m] -> records of the same shape.
+
+    ``position`` (steps, nodes, pairs) [m].
+    """
+    values = function(differences.positions(position))
     slopes = np.zeros(values.shape[1:], values.dtype)
-    shape = (1, nodes.size, 1) + (1,) * (slopes.ndim - 3)
     for name in slopes.dtype.names or ():
-        slopes[name] = sum(w.reshape(shape) * one[name] for w, one in zip(weights, values, strict=True))
+        slopes[name] = differences.slope(values[name])
+    return slopes
+
+
+def _gap_slopes(laws: ToothLaws, position: FloatArray, differences: _Differences) -> Records:
+    """Slopes of LAWS (1, steps, nodes, pairs) of like teeth, whose contacts do not swing.
+
+    Nothing reads the slopes of other laws than the gap: these slopes are 0.
+    """
+    slopes = np.zeros((1, *position.shape), LAWS)
+    if laws.elements is None and laws.mesh.unloaded.reliefs.size == 0:
+        return slopes
+    slopes["gap"] = differences.slope(laws.gap_of_like_teeth(differences.positions(position)))
     return slopes
 
 
@@ -334,33 +399,37 @@ def mesh_tables(
     )
     position = np.asarray(g.L_XA + (phase[..., None] + ahead) * g.base_pitch, dtype=np.float64)
     distance = _DIFFERENCE * g.base_pitch
+    differences = _Differences.at_nodes(in_step, distance)
     kinds = range(len(laws.faults))
-    slopes = np.stack([_slopes(partial(laws.of_kind, kind), position, in_step, distance) for kind in kinds])
+    unlike = laws.pair is not laws.healthy
+    if unlike:
+        slopes = np.stack([_slopes(partial(laws.of_kind, kind), position, differences) for kind in kinds])
+    else:
+        slopes = _gap_slopes(laws, position, differences)
     if not laws.loaded:  # fixed windows stay at their places
         slopes["stiffness"] = 0.0
         slopes["damping"] = 0.0
         slopes["mu"] = 0.0
-    unlike = laws.pair is not laws.healthy
     no_shapes = np.zeros((*position.shape, 2), TOOTH)  # the numbers of like teeth are 0: no shape acts
     turning = laws.turning()
     angle = 2.0 * np.pi / turning["cycles"] * phase[..., None]
-    pinion, gear = tooth_errors(laws.pair)
+    pinion, gear = laws.teeth
     return MeshTables(
         edges=steps.edges,
         nodes=in_step,
-        weights=_quadrature_weights(in_step),
+        weights=_quadrature_weights(tuple(in_step.tolist())),
         outputs=steps.outputs,
         ahead=ahead,
         position=position,
-        laws=np.stack([laws.of_kind(kind, position) for kind in kinds]),
+        laws=np.concatenate([laws.of_kind(kind, position)[None] for kind in kinds]),
         slopes=slopes,
         shape=laws.shapes(position) if unlike else no_shapes,
-        shape_slope=_slopes(laws.shapes, position, in_step, distance) if unlike else no_shapes,
-        flanks=np.array([laws.ends(kind) for kind in kinds], FLANKS),
+        shape_slope=_slopes(laws.shapes, position, differences) if unlike else no_shapes,
+        flanks=laws.flank_ends,
         coupling=_coupling(laws, position),
         kinds=laws.kinds,
-        pinion=_of_teeth(pinion),
-        gear=_of_teeth(gear),
+        pinion=pinion,
+        gear=gear,
         turning=turning,
         turned=np.stack([np.cos(angle), np.sin(angle)], axis=-1),
         cotangent=1.0 / np.tan(g.operating_pressure_angle),

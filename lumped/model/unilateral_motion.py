@@ -23,6 +23,7 @@ import numpy as np
 
 from lumped.errors import NumericalError
 from lumped.mesh.motion import Run
+from lumped.model.mesh_cycle import MeshCycle
 from lumped.model.momentary_load import (
     MomentaryRuns,
     mean_powers,
@@ -34,11 +35,16 @@ from lumped.model.period_closure import Closed, close_period
 from lumped.model.periodic_system import LTVSystem, Supports
 from lumped.model.revolution_motion import Origin, RevolutionMotion, Touch
 from lumped.model.solution import static_deflection
+from lumped.model.static_cycle import StaticCycle
 from lumped.model.steady import UNSTABLE, PeriodicSolution, periodic_solution
 from lumped.model.tooth_laws import ToothLaws
 from lumped.schema.pair import GearPair
-from lumped.typing import FloatArray
+from lumped.typing import BoolArray, FloatArray, IntArray
 
+#: Largest angle of the fastest vibration in a step of the linear motion from which the search starts [rad].
+_START_ANGLE = 2.0
+#: Most steps of Broyden's method, with long integration steps, from the rough linear motion.
+_FEW_STEPS = 6
 #: Mismatch at the end of the period, over the size of the unknowns, that counts as closed; the same with
 #: steps twice as long; and what still counts as closed where rounding allows no less.
 _CLOSED = 1e-10
@@ -99,7 +105,9 @@ class Shooting:
     @classmethod
     def of(cls, pair: GearPair, samples: int, supports: Supports) -> Self:
         """Return the search for a motion that repeats with every mesh cycle."""
-        return cls.of_laws(pair, LTVSystem.of(pair, "full", supports=supports), ToothLaws(pair), samples)
+        laws = ToothLaws(pair)
+        cycle = StaticCycle(laws) if laws.loaded else None
+        return cls.of_laws(pair, LTVSystem.of(pair, "full", cycle=cycle, supports=supports), laws, samples)
 
     @classmethod
     def of_laws(cls, pair: GearPair, system: LTVSystem, laws: ToothLaws, samples: int) -> Self:
@@ -115,15 +123,46 @@ class Shooting:
         """Number of outputs of ``fine`` for one output of ``coarse``."""
         return outputs_for_one(self.samples)
 
-    @cached_property
+    @property
     def to_relative(self) -> FloatArray:
         """Matrix (2m - 2, 2m) from states to states without the common rotation."""
-        return np.asarray(np.kron(np.eye(2), self.system.supports.relative), dtype=np.float64)
+        return self.system.supports.to_relative_states
 
-    @cached_property
+    @property
     def from_relative(self) -> FloatArray:
         """Matrix (2m, 2m - 2) back to all states; the common rotation becomes 0."""
-        return np.asarray(np.kron(np.eye(2), self.system.supports.back), dtype=np.float64)
+        return self.system.supports.from_relative_states
+
+    @cached_property
+    def to_mismatch(self) -> FloatArray:
+        """Matrix (2m - 1, 2m) from changes of the states to the mismatch: the relative states, and the
+        weighted rate of the common rotation.
+        """
+        weights = self.system.supports.common_weights
+        return np.vstack([self.to_relative, np.append(np.zeros(weights.size), weights)])
+
+    @cached_property
+    def moves_no_tooth(self) -> BoolArray:
+        """Which relative states (2m - 2,) move no tooth: the mesh does not feel their motion, and neither do
+        the others. On springs they are the displacements off the line of action, and their rates.
+        """
+        free = self._free
+        half = len(free) // 2
+        of_mesh = np.tile(self.system.deflection @ self.system.supports.back != 0.0, 2)
+        still = ~of_mesh
+        for _ in range(half):
+            # A state that acts on a state which moves the teeth moves the teeth itself.
+            acts = (free[~still] != 0.0).any(axis=0)
+            acts = np.tile(acts[:half] | acts[half:], 2)
+            if not (still & acts).any():
+                break
+            still &= ~acts
+        return still
+
+    @property
+    def _free(self) -> FloatArray:
+        """Matrix (2m - 2, 2m - 2) of the relative states with the teeth apart."""
+        return np.asarray(self.to_relative @ self.system.constant @ self.from_relative, dtype=np.float64)
 
     def torques(self, unknowns: FloatArray) -> tuple[float, float]:
         """Mean torques of drive and brake [N m] that belong to the unknowns."""
@@ -154,22 +193,23 @@ class Shooting:
         ----------
         unknowns, runs : start, and the runs with their steps
         rate : rate of the common rotation at the start
-        cycles, recorded : mesh cycles, and the last ones that are recorded; 0: as many as the motion has
+        cycles : mesh cycles; 0: as many as the motion has
+        recorded : number of the last mesh cycles that are recorded, which takes half as long again
         """
         system = self.system
         driving, brake = self.torques(unknowns)
         torques = driving * system.torque_pinion + brake * system.torque_gear
-        common = system.supports.common
-        state = self.from_relative @ unknowns[:-1] + np.append(np.zeros(common.size), rate * common)
+        state = self.from_relative @ unknowns[:-1]
+        if rate != 0.0:
+            common = system.supports.common
+            state[common.size :] += rate * common
         count = cycles or self.cycles
-        return state, runs.run(0, count, recorded or count, state, torques)
+        return state, runs.run(0, count, recorded, state, torques)
 
     def mismatch(self, unknowns: FloatArray, runs: MomentaryRuns) -> tuple[FloatArray, Run]:
         """Change of state and weighted rate of the common rotation over the cycles; and the run."""
         state, period_run = self.run(unknowns, runs)
-        change = period_run.end - state
-        weights = self.system.supports.common_weights
-        return np.append(self.to_relative @ change, weights @ change[weights.size :]), period_run
+        return self.to_mismatch @ (period_run.end - state), period_run
 
     def scales(self, unknowns: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Sizes of the unknowns (2m - 1,), and sizes of the entries of the mismatch (2m - 1,)."""
@@ -184,32 +224,59 @@ class Shooting:
         """Derivatives of the mismatch by the unknowns, over their scales, by the linear motion's maps."""
         sizes, of_mismatch = self.scales(unknowns)
         phi, forced = linear.over_cycle
-        weights = self.system.supports.common_weights
         torque = 2
         if self.pair.operating.brake_torque != "balanced":
             torque = 1
-        to_mismatch = np.vstack([self.to_relative, np.append(np.zeros(weights.size), weights)])
-        by_state = (to_mismatch @ (phi - np.eye(phi.shape[0]))) @ self.from_relative
-        by_torque = to_mismatch @ forced[:, torque]
+        by_state = (self.to_mismatch @ (phi - np.eye(phi.shape[0]))) @ self.from_relative
+        by_torque = self.to_mismatch @ forced[:, torque]
         slopes = np.column_stack([by_state, by_torque])
         return np.asarray(slopes * sizes / of_mismatch[:, None], dtype=np.float64)
 
-    def derivatives(self, unknowns: FloatArray, columns: int | None = None) -> FloatArray:
-        """Derivatives of the mismatch by the first unknowns, both over their scales, by differences.
+    def derivatives(self, unknowns: FloatArray) -> FloatArray:
+        """Derivatives of the mismatch by the unknowns, both over their scales, by differences.
 
-        The runs have steps twice as long. ``columns``: number of these unknowns; by default all.
+        The runs have steps twice as long.
         """
-        sizes, of_mismatch = self.scales(unknowns)
         unchanged = self.mismatch(unknowns, self.coarse)[0]
-        changes = np.diag(_DIFFERENCE * sizes)[:columns]
+        return self._differences(unknowns, unchanged, np.arange(unknowns.size))
+
+    def _differences(self, unknowns: FloatArray, unchanged: FloatArray, columns: IntArray) -> FloatArray:
+        """Derivatives by some of the unknowns; ``unchanged`` is the mismatch of runs with long steps."""
+        sizes, of_mismatch = self.scales(unknowns)
+        changes = np.diag(_DIFFERENCE * sizes)[columns]
         changed = np.array([self.mismatch(unknowns + change, self.coarse)[0] for change in changes])
         return np.asarray(((changed - unchanged) / _DIFFERENCE / of_mismatch).T, dtype=np.float64)
 
-    def closed(self, unknowns: FloatArray, slopes: FloatArray, accepted: float = _ACCEPTED) -> Closed[Run]:
+    def spectral_radius(self, unknowns: FloatArray, unchanged: FloatArray) -> float:
+        """Largest modulus of the multipliers of the motion from some unknowns.
+
+        Multipliers of states that move no tooth are those of free vibrations. The others follow from
+        differences of runs with steps twice as long.
+
+        Parameters
+        ----------
+        unknowns : that close the period
+        unchanged : mismatch (2m - 1,) of the run with long steps from these unknowns
+        """
+        still = self.moves_no_tooth
+        moving = np.flatnonzero(~still)
+        slopes = self._differences(unknowns, unchanged, moving)[moving]
+        multipliers = np.abs(np.linalg.eigvals(slopes + np.eye(moving.size)))
+        growth = np.linalg.eigvals(self._free[np.ix_(still, still)]).real.max(initial=-np.inf)
+        return max(float(multipliers.max()), math.exp(growth * self.cycles * self.system.period))
+
+    def closed(
+        self, unknowns: FloatArray, slopes: FloatArray, accepted: float = _ACCEPTED, most: int = 40
+    ) -> Closed[Run]:
         """Close the period by Broyden's method, from unknowns and derivatives that may be rough.
 
         The first steps run with integration steps twice as long, the last ones with those of the motion.
-        ``accepted`` is the largest mismatch of the result.
+
+        Parameters
+        ----------
+        unknowns, slopes : start, and derivatives of the mismatch by the unknowns, both over their scales
+        accepted : largest mismatch of the result
+        most : most steps of Broyden's method with the long integration steps
 
         Raises
         ------
@@ -224,7 +291,7 @@ class Shooting:
 
             return over_period
 
-        rough = close_period(over(self.coarse), unknowns, sizes, slopes, closed=_NEARLY_CLOSED)
+        rough = close_period(over(self.coarse), unknowns, sizes, slopes, closed=_NEARLY_CLOSED, most=most)
         if rough.mismatch > _NEARLY_CLOSED:
             raise NumericalError("No periodic motion that follows the momentary load is near this one.")
         fine = close_period(over(self.fine), rough.unknowns, sizes, rough.derivatives, closed=_CLOSED)
@@ -242,15 +309,15 @@ class Shooting:
         support = self.system.supports
         m = support.common_weights.size
         weights = support.common_weights
+        start, coarse = self.run(closed.unknowns, self.coarse, recorded=self.cycles)
         if radius >= _FADED:
-            slopes = self.derivatives(closed.unknowns, 2 * m - 2)[:-1]
-            radius = float(np.abs(np.linalg.eigvals(slopes + np.eye(2 * m - 2))).max())
+            radius = self.spectral_radius(closed.unknowns, self.to_mismatch @ (coarse.end - start))
         # Powers are those of the mean speed: the run starts with a common rate whose mean vanishes.
-        change = closed.passed.end[:m] - closed.passed.states[0, :m]
+        change = (closed.passed.end - start)[:m]
         rate = float(weights @ change) / float(weights @ support.common) / (self.cycles * system.period)
-        final = self.run(closed.unknowns, self.fine, rate=-rate)[1]
+        final = self.run(closed.unknowns, self.fine, rate=-rate, recorded=self.cycles)[1]
         dte = final.states[:, :m] @ system.deflection
-        coarse_dte = self.run(closed.unknowns, self.coarse)[1].states[:, :m] @ system.deflection
+        coarse_dte = coarse.states[:, :m] @ system.deflection
         driving, brake = self.torques(closed.unknowns)
         time = np.arange(self.cycles * self.samples) / self.samples * system.period
         return RevolutionMotion(
@@ -269,6 +336,26 @@ class Shooting:
             spectral_radius=radius,
             origin=Origin.LINEAR,
         )
+
+    def close_by(self) -> RevolutionMotion | None:
+        """Return the motion that few steps of Broyden's method reach from a rough linear motion, or None.
+
+        Where few steps suffice, the exact linear motion leads to the same motion. Where contact is lost for
+        long, motions coexist, and many steps may lead to any of them.
+        """
+        with suppress(NumericalError):
+            linear = periodic_solution(
+                self.system, np.zeros(1), estimate_error=False, step_angle=_START_ANGLE
+            )
+            start = self.unknowns(linear.states[0], linear.pinion_torque, linear.brake_torque)
+            closed = self.closed(start, self.linear_derivatives(linear, start), most=_FEW_STEPS)
+            return self.motion(closed, linear.spectral_radius)
+        return None
+
+    def with_fitted_laws(self) -> Shooting:
+        """Return the same search with the fitted laws of the linear form, which its exact motion needs."""
+        system = self.system
+        return replace(self, system=replace(system, cycle=MeshCycle.of(system.pair)))
 
     def near(self, start: FloatArray, linear: PeriodicSolution) -> tuple[Closed[Run] | None, float]:
         """Close the period near a linear motion; return the result, or None, and a spectral radius near
@@ -393,6 +480,11 @@ def motion_of_shooting(shooting: Shooting, *, settles: bool = True) -> Revolutio
     ------
     NumericalError : no such motion is found
     """
+    if isinstance(shooting.system.cycle, StaticCycle):
+        close = shooting.close_by()
+        if close is not None and (close.spectral_radius <= UNSTABLE or not settles):
+            return close
+        shooting = shooting.with_fitted_laws()
     radius_of_linear = 1.0
     try:
         linear = periodic_solution(shooting.system, np.zeros(1), estimate_error=False)

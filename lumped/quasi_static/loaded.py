@@ -10,6 +10,7 @@ Sources: docs/theory/contact_energy.md, "Loaded contact of the linear model".
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache, partial
@@ -329,6 +330,18 @@ class StaticMesh:
         middle_contacts(approach, phases, self.flanks, self.law, contact, workspace(phases))
         return StaticPair(approach, contact)
 
+    def pairs_in_contact(self, xi: FloatArray) -> StaticPair:
+        """Return pairs at xi (pairs, n) [m], whole pitches apart in each column, in static equilibrium.
+
+        The result has pairs n entries, those of the first pair first. The middle pair of a column must have
+        all pairs that carry load within reach.
+        """
+        contact = np.zeros(xi.size, CONTACT)
+        phases = self.phases(xi.ravel())
+        approach = np.tile(self.approach(xi[len(xi) // 2]), len(xi))
+        middle_contacts(approach, phases, self.flanks, self.law, contact, workspace(phases))
+        return StaticPair(approach, contact)
+
     def approach_slope(self, xi: FloatArray) -> FloatArray:
         """Slope of the fitted approach over xi, (n,) [-]."""
         assert self._fitted is not None
@@ -424,15 +437,42 @@ def _damping(pair: GearPair, ratio: float, mass: float) -> PathFunction:
 
 
 @lru_cache(maxsize=_KEPT)
-def loaded_contact(pair: GearPair) -> LoadedContact:
-    """Return the laws of a tooth pair under the mean torque, of a pair ``at_rest``."""
-    mesh = StaticMesh(pair)
+def static_mesh(pair: GearPair) -> StaticMesh:
+    """Return the mesh under the mean torque, of a pair ``at_rest``, without a fit of the approach."""
+    return StaticMesh(pair)
+
+
+class Touching(NamedTuple):
+    """Where a tooth pair carries load in the statically loaded mesh.
+
+    Attributes
+    ----------
+    contact : (n, 2) intervals of xi in which the pair carries load [m]
+    kinks : positions of a pair at which stiffness or gap of this pair is not smooth (k,) [m]
+    """
+
+    contact: FloatArray
+    kinks: FloatArray
+
+    @property
+    def interval(self) -> tuple[float, float]:
+        """First and last position at which the pair carries load [m]."""
+        return float(self.contact[0, 0]), float(self.contact[-1, 1])
+
+
+@lru_cache(maxsize=_KEPT)
+def touching(pair: GearPair) -> Touching:
+    """Return where a tooth pair carries load under the mean torque, of a pair ``at_rest``.
+
+    Raises
+    ------
+    NumericalError : the pair touches too far beyond its flanks
+    ParameterError : the bearings let the teeth part
+    """
+    mesh = static_mesh(pair)
     g = pair.geometry
-    law = mesh.law
-    stiffness_of = mesh.stiffness
-    near = _SAME * pair.geometry.base_pitch
     starts = relief_starts(pair) if pair.mesh.relief == "static" else np.empty(0)
-    kinks = np.concatenate([stiffness_of.law.switches, starts, [g.L_XA, g.L_XD]])
+    kinks = np.concatenate([mesh.stiffness.law.switches, starts, [g.L_XA, g.L_XD]])
     jumps = np.add.outer(kinks, mesh.shifts)
     contact = positive_intervals(
         lambda xi: mesh.static(xi).compression, mesh.low, mesh.high, jumps, g.base_pitch
@@ -448,8 +488,18 @@ def loaded_contact(pair: GearPair) -> LoadedContact:
             f"Under {pair.operating.pinion_torque:g} N m a tooth pair touches more than {_REACH:g} base "
             f"pitches beyond its flanks: {action}."
         )
-    low = float(contact[0, 0])
-    high = float(contact[-1, 1])
+    return Touching(contact, kinks)
+
+
+@lru_cache(maxsize=_KEPT)
+def loaded_contact(pair: GearPair) -> LoadedContact:
+    """Return the laws of a tooth pair under the mean torque, of a pair ``at_rest``."""
+    mesh = copy.copy(static_mesh(pair))
+    law = mesh.law
+    stiffness_of = mesh.stiffness
+    near = _SAME * pair.geometry.base_pitch
+    contact, kinks = touching(pair)
+    low, high = touching(pair).interval
     corners = _corners(mesh, low, high)
     marks = np.add.outer(np.concatenate([kinks, contact.ravel(), corners]), mesh.shifts)
     inside = np.unique(marks[(marks > low + near) & (marks < high - near)])
@@ -493,7 +543,8 @@ def loaded_contact(pair: GearPair) -> LoadedContact:
         share = closing(xi)
         return np.asarray((gap.slope(xi) - (1.0 - share) * mesh.approach_slope(xi)) / share)
 
-    steepest = max(float(np.abs(gap.slope(np.linspace(low, high, 101))).max()), deflection / g.base_pitch)
+    slope_of_deflection = deflection / pair.geometry.base_pitch
+    steepest = max(float(np.abs(gap.slope(np.linspace(low, high, 101))).max()), slope_of_deflection)
     damper_gap = PathFunction.fit(rolling, gap.breaks, inside, tolerance=_SLOPE * steepest, by_length=True)
     return LoadedContact(
         stiffness=restricted(stiffness, contact),

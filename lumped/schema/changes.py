@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import re
 from collections.abc import Mapping, Sequence
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -118,12 +119,11 @@ def changed(pair: Section, changes: Mapping[str, Any]) -> dict[str, Any]:
         if path == _STIFFNESS:
             outdated.append(_SECTION)
             _assign(type(pair), data, outdated[-1], {})
-        for group in _ALTERNATIVES:
-            if value is not None and any(f"{path}.".startswith(f"{one}.") for one in group):
-                outdated += group
-                for other in group:
-                    if not path.startswith(f"{other}.") and other not in changes:
-                        _assign(type(pair), data, other, None)
+        for group in _alternatives_of(path) if value is not None else ():
+            outdated += group
+            for other in group:
+                if not path.startswith(f"{other}.") and other not in changes:
+                    _assign(type(pair), data, other, None)
         _assign(type(pair), data, path, value)
         for table in (sources, assumed):
             for one in inside_any(table, outdated):
@@ -131,6 +131,12 @@ def changed(pair: Section, changes: Mapping[str, Any]) -> dict[str, Any]:
         if path not in (*WORDS, *ABOUT) and value is not None:
             sources[path] = "varied by the user"
     return data
+
+
+@lru_cache(maxsize=1024)  # every variation of a pair has the same paths
+def _alternatives_of(path: str) -> tuple[tuple[str, ...], ...]:
+    """Groups of alternative fields to which a field, or a field around it, belongs."""
+    return tuple(group for group in _ALTERNATIVES if any(within(path, one) for one in group))
 
 
 def _other_bearing(pair: Section, data: dict[str, Any], gear: str, changes: Mapping[str, Any]) -> None:

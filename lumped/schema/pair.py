@@ -239,6 +239,8 @@ class GearPair(Section, metaclass=_InOurWords):
         shifts = self.pinion.profile_shift, self.gear.profile_shift
         if self.centre_distance is None or None in shifts:
             return problems
+        if not problems and self._play(self.geometry) <= _LARGEST_PLAY * self.basic_rack.module:
+            return problems
         sections = {name: getattr(self, name) for name in GearPair.model_fields}
         of_shifts = GearPair.model_construct(**sections | {"centre_distance": None})
         try:
@@ -251,13 +253,10 @@ class GearPair(Section, metaclass=_InOurWords):
         about = f"about {free.centre_distance * 1e3:.6g} mm for these shifts"
         allowed = f"normal backlash >= 0 and <= {_LARGEST_PLAY:g} modules, so {about}"
         try:
-            angle = self._geometry_at(self.centre_distance).operating_pressure_angle
+            play = self._play(self._geometry_at(self.centre_distance))
         except ParameterError as error:  # no geometry, so no backlash: a centre distance below the base radii
             allowed = f"{error.problems[0].allowed}, {about}"
         else:
-            play = theoretical_backlash(*self.wheels, angle)
-            if not problems and play <= _LARGEST_PLAY * self.basic_rack.module:
-                return problems
             thinned = play + self.mesh.backlash
             value += (
                 f", backlash {thinned * 1e3:.4f} mm: the teeth wedge"
@@ -276,6 +275,10 @@ class GearPair(Section, metaclass=_InOurWords):
         actions.append("or correct the wrong one. Teeth that are thinned on purpose: mesh.backlash")
         first = FieldProblem("centre_distance", value, allowed, f"{', '.join(actions)}.")
         return [first, *(problem for problem in problems if problem.field not in _OF_THE_MESH)]
+
+    def _play(self, geometry: Geometry) -> float:
+        """Backlash of the teeth as cut, without ``mesh.backlash`` [m]."""
+        return theoretical_backlash(*self.wheels, geometry.operating_pressure_angle)
 
     @cached_property
     def wheels(self) -> tuple[Wheel, Wheel]:

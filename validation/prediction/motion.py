@@ -345,7 +345,9 @@ def _of_plain(pair: GearPair, cycle: PlainMotion, motion: Motion) -> Prediction:
     """Numbers of a periodic motion as plain arrays, sampled at equal steps over its period."""
     attributes = cycle.attributes
     dte = cycle.values["dte"]
-    swing = attributes.get("dte_peak_to_peak", peak_to_peak(cycle.time, dte, cycle.values["dte_dot"]))
+    swing = attributes.get("dte_peak_to_peak")
+    if swing is None:
+        swing = peak_to_peak(cycle.time, dte, cycle.values["dte_dot"])
     return Prediction(
         pair=pair,
         motion=motion,

@@ -225,12 +225,18 @@ def uncertainty(
         count()
         if row is not None:
             other_forms[number] = row
-    for column, name in enumerate(QUANTITIES):
-        attrs = dataset[name].attrs | {"long_name": f"{dataset[name].attrs['long_name']}, inputs as given"}
-        dataset[f"{name}_form"] = ("form", other_forms[:, column], attrs)
-    dataset = dataset.assign_coords(
-        form=("form", list(forms), {"units": "1", "long_name": "form of the model"})
-    )
+    labels = {name: dataset[name].attrs for name in QUANTITIES}
+    # All at once: each assignment copies the dataset.
+    dataset = dataset.assign(
+        {
+            f"{name}_form": (
+                "form",
+                other_forms[:, column],
+                labels[name] | {"long_name": f"{labels[name]['long_name']}, inputs as given"},
+            )
+            for column, name in enumerate(QUANTITIES)
+        }
+    ).assign_coords(form=("form", list(forms), {"units": "1", "long_name": "form of the model"}))
     names = (name for name in dataset.data_vars if dataset[name].dims == ("sample",))
     dataset.attrs |= {f"given_{name}": float(value) for name, value in zip(names, nominal, strict=False)}
     dataset.attrs |= {"taken": len(rows), "asked": samples, "refused": len(rows) - len(table), "seed": seed}
