@@ -14,8 +14,8 @@ from pathlib import Path
 #: Time of the second process [s]: for its start, and for each megabyte of the file.
 _PATIENCE = 20.0
 _PATIENCE_PER_MEGABYTE = 1.0
-#: Program of the second process. A file that it refuses by an exception is refused in words by the reader in
-#: this process, which meets the same exception. Values are read where the variables claim less than the limit.
+#: Program of the second process. Where it meets an exception, the reader in this process meets the same one,
+#: and refuses the file in words. Values are read where the variables claim less than the limit.
 _READER = """
 import sys, h5netcdf, h5py
 most = int(sys.argv[2])
