@@ -23,6 +23,7 @@ import numpy as np
 
 from lumped.errors import NumericalError
 from lumped.mesh.motion import Run
+from lumped.model.equations import COORDINATES
 from lumped.model.momentary_load import (
     MomentaryRuns,
     mean_powers,
@@ -32,7 +33,8 @@ from lumped.model.momentary_load import (
 )
 from lumped.model.period_closure import Closed, close_period
 from lumped.model.periodic_system import LTVSystem, Supports
-from lumped.model.revolution_motion import Origin, RevolutionMotion, Touch
+from lumped.model.propagation import fastest_frequency
+from lumped.model.revolution_motion import Origin, RevolutionMotion, Touch, peaks_to_peaks, resolves
 from lumped.model.solution import static_deflection
 from lumped.model.steady import UNSTABLE, PeriodicSolution, periodic_solution
 from lumped.model.tooth_laws import ToothLaws
@@ -60,9 +62,14 @@ _MOST_STEPS = 5_000_000
 #: Mesh cycles of the longest motion that is sought. A run is compared with itself over so many times as many.
 _MOST_CYCLES = 8
 _COMPARED = 8
-#: Relative change after some cycles that counts as a repetition; outputs in a cycle of a run that settles.
+#: Relative change after some cycles that counts as a repetition; the same where a disturbance fades within a
+#: cycle: then rounding alone remains, which grows with the number of steps, 1e-5 at 60,000 steps.
 _REPEATS = 1e-6
+_REPEATS_OF_SLOW = 1e-4
+#: Outputs in a cycle of a run that settles.
 _OUTPUTS = 16
+#: Angle of the fastest vibration between two outputs from which a peak to peak is taken [rad].
+_OUTPUT_ANGLE = 1.5
 #: Teeth that differ: share of a start that may remain when the record begins, most cycles for that, and
 #: largest mismatch after the period, over the largest displacement, that counts as periodic.
 _START_FADED = 1e-11
@@ -225,7 +232,7 @@ class Shooting:
             return over_period
 
         rough = close_period(over(self.coarse), unknowns, sizes, slopes, closed=_NEARLY_CLOSED)
-        if rough.mismatch > _NEARLY_CLOSED:
+        if rough.mismatch > max(_NEARLY_CLOSED, accepted):
             raise NumericalError("No periodic motion that follows the momentary load is near this one.")
         fine = close_period(over(self.fine), rough.unknowns, sizes, rough.derivatives, closed=_CLOSED)
         if fine.mismatch > accepted:
@@ -268,7 +275,27 @@ class Shooting:
             error=float(np.abs(coarse_dte - dte[:: self.every]).max() / np.abs(dte).max()),
             spectral_radius=radius,
             origin=Origin.LINEAR,
+            resolved_peak_to_peak=self._resolved_peak_to_peak(closed.unknowns, -rate),
         )
+
+    def _resolved_peak_to_peak(self, unknowns: FloatArray, rate: float) -> dict[str, float]:
+        """Peak to peak from a run with outputs that resolve the fastest vibration [m].
+
+        Empty where the outputs of the motion resolve it.
+        """
+        system = self.system
+        if resolves(system, self.samples):
+            return {}
+        angle = fastest_frequency(system) * system.period
+        outputs = self.samples * math.ceil(angle / (_OUTPUT_ANGLE * self.samples))
+        tables = momentary_tables(self.laws, system, 1.0 / steps_of(system), outputs)
+        states = self.run(unknowns, MomentaryRuns(self.pair, system, tables), rate=rate)[1].states
+        z, rates = system.gear_motion(states)
+        values = {"dte": z @ system.structure.deflection, "dte_dot": rates @ system.structure.deflection}
+        for number, name in enumerate(COORDINATES):
+            values |= {name: z[:, number], f"{name}_dot": rates[:, number]}
+        time = np.arange(len(states)) / outputs * system.period
+        return peaks_to_peaks(system, time, values, self.cycles)
 
     def near(self, start: FloatArray, linear: PeriodicSolution) -> tuple[Closed[Run] | None, float]:
         """Close the period near a linear motion; return the result, or None, and a spectral radius near
@@ -313,10 +340,10 @@ class Shooting:
             starts = np.vstack([settling.states[::_OUTPUTS], settling.end]) @ self.to_relative.T
             unknowns = np.append(starts[-1], unknowns[-1])
             sizes, _ = self.scales(unknowns)
-            repeated = (np.abs(starts[-2::-1] - starts[-1]) <= _REPEATS * sizes[:-1]).all(axis=1)
+            allowed = _REPEATS_OF_SLOW if radius < _FADED else _REPEATS
+            repeated = (np.abs(starts[-2::-1] - starts[-1]) <= allowed * sizes[:-1]).all(axis=1)
             repeats = np.flatnonzero(repeated[:_MOST_CYCLES])[:1] + 1
-            # Where pairs touch within long steps, a slow pair repeats to a part of a millionth and no better.
-            accepted = _REPEATS if repeats.size else _ACCEPTED
+            accepted = allowed if repeats.size else _ACCEPTED
             swing = float(np.ptp(settling.states[:, :m] @ deflection))
             if not repeats.size and radius < _FADED:
                 continue  # settling is fast, so no motion nearby is waiting to be closed
