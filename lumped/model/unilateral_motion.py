@@ -39,7 +39,7 @@ from lumped.model.solution import static_deflection
 from lumped.model.steady import UNSTABLE, PeriodicSolution, periodic_solution
 from lumped.model.tooth_laws import ToothLaws
 from lumped.schema.pair import GearPair
-from lumped.typing import FloatArray
+from lumped.typing import FloatArray, Progress, unheard
 
 #: Mismatch at the end of the period, over the size of the unknowns, that counts as closed; the same with
 #: steps twice as long; and what still counts as closed where rounding allows no less.
@@ -310,7 +310,9 @@ class Shooting:
             return self.closed(start, self.derivatives(start)), 1.0
         return None, 1.0
 
-    def settled(self, unknowns: FloatArray, radius: float = 1.0) -> RevolutionMotion:
+    def settled(
+        self, unknowns: FloatArray, radius: float = 1.0, progress: Progress = unheard
+    ) -> RevolutionMotion:
         """Return the stable motion, of at most eight mesh cycles, to which a run settles.
 
         Each run is compared with itself after 1 to 8 cycles. Broyden's method then looks for a stable motion
@@ -321,6 +323,7 @@ class Shooting:
         unknowns : start of the first run
         radius : spectral radius of the linear motion. The smaller it is, the shorter is the first run: the
             mesh cycle of a slow pair has many steps, and its vibrations fade within the cycle
+        progress : called with the finished share of the runs before each run
 
         Raises
         ------
@@ -332,7 +335,9 @@ class Shooting:
         m = deflection.size
         tables = momentary_tables(self.laws, self.system, 2.0 / steps_of(self.system), _OUTPUTS)
         runs = MomentaryRuns(self.pair, self.system, tables)
-        for settling_cycles in _settling_runs(first, steps_of(self.system) // 2):
+        counts = list(_settling_runs(first, steps_of(self.system) // 2))
+        for number, settling_cycles in enumerate(counts):
+            progress(sum(counts[:number]) / sum(counts), f"run over {settling_cycles} mesh cycles")
             cycles = settling_cycles + compared
             _, settling = self.run(unknowns, runs, cycles=cycles, recorded=compared)
             if not np.isfinite(settling.end).all():
@@ -388,7 +393,12 @@ def outputs_for_one(samples: int) -> int:
 
 
 def unilateral_motion(
-    pair: GearPair, samples: int, supports: Supports = "springs", *, settles: bool = True
+    pair: GearPair,
+    samples: int,
+    supports: Supports = "springs",
+    *,
+    settles: bool = True,
+    progress: Progress = unheard,
 ) -> RevolutionMotion:
     """Periodic motion of a pair with unilateral contact by momentary load, with the teeth of the pair.
 
@@ -403,17 +413,20 @@ def unilateral_motion(
     supports : as of ``periodic_system``
     settles : whether a run settles where Broyden's method finds no stable motion. If not, the unstable motion
         is returned
+    progress : called with the finished fraction and what is being done
 
     Raises
     ------
     NumericalError : no such motion is found
     """
     if pair.healthy is not pair:
-        return settled_motion(pair, samples, supports)
-    return motion_of_shooting(Shooting.of(pair, samples, supports), settles=settles)
+        return settled_motion(pair, samples, supports, progress=progress)
+    return motion_of_shooting(Shooting.of(pair, samples, supports), settles=settles, progress=progress)
 
 
-def motion_of_shooting(shooting: Shooting, *, settles: bool = True) -> RevolutionMotion:
+def motion_of_shooting(
+    shooting: Shooting, *, settles: bool = True, progress: Progress = unheard
+) -> RevolutionMotion:
     """Periodic motion of like teeth by ``shooting`` from its linear motion, see ``unilateral_motion``.
 
     Raises
@@ -421,6 +434,7 @@ def motion_of_shooting(shooting: Shooting, *, settles: bool = True) -> Revolutio
     NumericalError : no such motion is found
     """
     radius_of_linear = 1.0
+    progress(0.0, "linear motion")
     try:
         linear = periodic_solution(shooting.system, np.zeros(1), estimate_error=False)
     except NumericalError:  # a multiplier at +1
@@ -428,18 +442,26 @@ def motion_of_shooting(shooting: Shooting, *, settles: bool = True) -> Revolutio
     else:
         radius_of_linear = linear.spectral_radius
         start = shooting.unknowns(linear.states[0], linear.pinion_torque, linear.brake_torque)
+        progress(0.1, "motion near the linear one")
         near, radius = shooting.near(start, linear)
         if near is not None:
+            progress(0.25, "stability")
             motion = shooting.motion(near, radius)
             if motion.spectral_radius <= UNSTABLE or not settles:
                 return motion
     if not settles:
         raise NumericalError("No periodic motion that follows the momentary load is near the linear one.")
-    return shooting.settled(start, radius_of_linear)
+    return shooting.settled(
+        start, radius_of_linear, lambda share, stage="", /: progress(0.3 + 0.7 * share, stage)
+    )
 
 
 def settled_motion(
-    pair: GearPair, samples: int, supports: Supports = "springs", steps: int | None = None
+    pair: GearPair,
+    samples: int,
+    supports: Supports = "springs",
+    steps: int | None = None,
+    progress: Progress = unheard,
 ) -> RevolutionMotion:
     """Periodic motion of a pair whose teeth differ, with unilateral contact.
 
@@ -452,7 +474,9 @@ def settled_motion(
     samples : outputs a mesh cycle
     supports : as of ``periodic_system``
     steps : least number of steps in a mesh cycle; by default the number that the fastest vibration needs
+    progress : called with the finished fraction and what is being done
     """
+    progress(0.0, "twin with like teeth")
     touch = Touch.MOMENTARY if pair.mesh.contact == "loaded" else Touch.WINDOWS
     system = LTVSystem.of(pair.healthy, "full", supports=supports)
     try:
@@ -471,6 +495,7 @@ def settled_motion(
     m = weights.size
     coarse = np.zeros(0)
     for part in (4, 1):
+        progress(0.1 if part > 1 else 0.3, "run with long steps" if part > 1 else "run")
         tables = momentary_tables(laws, system, part / steps, samples)
         torques = driving * system.torque_pinion + brake * system.torque_gear
         count = settling + tables.period
