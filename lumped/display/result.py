@@ -51,6 +51,13 @@ class Row(NamedTuple):
     words: str
 
 
+def no_variables(variables: tuple[object, ...]) -> None:
+    """Refuse arguments of the method ``plot`` of a result: a result has one figure."""
+    if variables:
+        action = "Leave it out; xarray draws one variable of a dataset: prediction.cycle['dte'].plot()."
+        raise refuse("plot", variables[0], "no argument", action)
+
+
 class DisplayedResult:
     """Base of results: a text of at most 20 lines, a table in notebooks, and advice on unknown names.
 
@@ -77,9 +84,7 @@ class DisplayedResult:
         ------
         ParameterError : this kind of result has no figure, or a variable is named
         """
-        if variables:
-            action = "Leave it out; xarray draws one variable of a dataset: prediction.cycle['dte'].plot()."
-            raise refuse("plot", variables[0], "no argument", action)
+        no_variables(variables)
         return figure_of(self)
 
     def __repr__(self) -> str:
