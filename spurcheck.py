@@ -111,6 +111,7 @@ _INSTEAD = {
     "predict(pair).efficiency": "efficiency losses power_loss",
     "floquet.gear_pair_multipliers(pair).verdict": "is_stable stable",
     "order_spectrum(motion)": "fft spectrum",
+    "natural_frequencies(pair)": "resonance resonances critical_speed critical_speeds eigenfrequencies modes",
     "preset_names()": "presets list_presets",
     "crosscheck(pair).attribution()": "attribution causes",
     "crosscheck(pair).power_balance()": "power_balance energy_balance energy",
@@ -121,6 +122,14 @@ _INSTEAD = {
 _ARGUMENTS = {
     "model": "The multibody model is spurcheck.multibody.{name}.",
     "contact": "steady_state, simulate and speed_sweep take contact; a prediction has unilateral contact.",
+}
+#: Argument that a function does not have -> arguments of functions that mean the same.
+_SYNONYMS = {
+    "n": ("samples", "cycles"),
+    "samples": ("samples_per_cycle",),
+    "duration": ("cycles",),
+    "t_end": ("cycles",),
+    "time": ("cycles",),
 }
 _NAMES = (*_SOURCES, *_PACKAGES, "__version__")
 
@@ -205,6 +214,10 @@ def _explained(name: str, function: Any) -> Any:
         word = next((key for key in named if key not in signature.parameters), "")
         if word in _ARGUMENTS:
             return _ARGUMENTS[word].format(name=name)
+        if name == "new_pair" and "'module'" in error and "module" in named:
+            return "The teeth are one text: spurcheck.new_pair('19/41', module=...)."
+        if name == "plot" and "too many positional" in error:
+            return "Several results are a list: spurcheck.plot([one, another])."
         if word and (words := _about_argument(name, word, named[word], list(signature.parameters))):
             return words
         missing = re.search(r"missing .*'(\w+)'", error)
@@ -235,7 +248,11 @@ def _about_argument(name: str, word: str, value: object, parameters: list[str]) 
 
     several = not isinstance(value, str) and hasattr(value, "__len__")
     plural = [one for one in parameters if one in (f"{word}s", f"{word}s_rpm")]
-    near = plural or difflib.get_close_matches(word, [one for one in parameters if one != "pair"], 1, 0.8)
+    near = (
+        plural
+        or [one for one in _SYNONYMS.get(word, ()) if one in parameters]
+        or difflib.get_close_matches(word, [one for one in parameters if one != "pair"], 1, 0.8)
+    )
     if "axes" in parameters and (several or not near) and (axis := _axis_for(word)):
         return f"Give an axis: spurcheck.{name}(pair, axes={{{axis!r}: [...]}})."
     if near:

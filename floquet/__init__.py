@@ -4,6 +4,6 @@ Names are imported on first use; ``__init__.pyi`` lists them with their homes.
 ``floquet/engine/proven.py`` says what is proven, and which function proves it.
 """
 
-import lazy_loader
+from lumped.public_names import public_names
 
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+__getattr__, __dir__, __all__ = public_names(__name__, __file__)

@@ -139,6 +139,9 @@ def some_of(
 def of_type(field: str, value: object, kind: type[T], what: str) -> T:
     """Return an object of one type, or refuse it. ``what`` names the type, and the function that makes it."""
     if not isinstance(value, kind):
+        is_prediction = isinstance(getattr(type(value), "cycle", None), property)
+        if is_prediction and "run_up" not in what:
+            raise refuse(field, f"a {type(value).__name__}", what, "Give its dataset: prediction.cycle.")
         raise refuse(field, shown(value), what, "Give one of these.")
     return value
 

@@ -96,6 +96,14 @@ class NumericalError(SpurcheckError, ArithmeticError):
     """A computation did not reach its accuracy or met a non-finite number; the text says what to try."""
 
 
+class BeyondFlanksError(NumericalError):
+    """Teeth bend so far under the torque that pairs touch far beyond their flanks, where no model applies."""
+
+
+class SlowPairError(NumericalError):
+    """A mesh cycle lasts more vibrations than a run can follow: the pair moves as if it stood still."""
+
+
 class StorageError(SpurcheckError, OSError):
     """A result cannot be written; the text names the path, the reason and what to do."""
 

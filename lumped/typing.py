@@ -22,3 +22,7 @@ class Progress(Protocol):
 
 #: Argument ``progress`` of public functions, see ``lumped.display.progress``.
 ProgressRequest = Progress | bool | None
+
+
+def unheard(fraction: float, stage: str = "", /) -> None:
+    """A ``Progress`` for work of which nobody asks how far it is."""

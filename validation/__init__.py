@@ -5,9 +5,9 @@ Names are imported on first use, so that ``spurcheck --help`` answers at once; `
 
 from __future__ import annotations
 
-import lazy_loader
+from lumped.public_names import public_names
 
-_of_stub, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+_of_stub, __dir__, __all__ = public_names(__name__, __file__)
 
 
 def __getattr__(name: str) -> object:

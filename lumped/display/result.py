@@ -19,7 +19,7 @@ import numpy as np
 from lumped.display.described import description
 from lumped.display.formatting import MINUS, SPACE, number, quantity
 from lumped.display.pictures import element_of, figure_of
-from lumped.errors import ParameterError, SpurcheckError
+from lumped.errors import ParameterError, SpurcheckError, refuse
 
 #: Most lines of a table of a result.
 MOST_ROWS = 18
@@ -51,6 +51,13 @@ class Row(NamedTuple):
     words: str
 
 
+def no_variables(variables: tuple[object, ...]) -> None:
+    """Refuse arguments of the method ``plot`` of a result: a result has one figure."""
+    if variables:
+        action = "Leave it out; xarray draws one variable of a dataset: prediction.cycle['dte'].plot()."
+        raise refuse("plot", variables[0], "no argument", action)
+
+
 class DisplayedResult:
     """Base of results: a text of at most 20 lines, a table in notebooks, and advice on unknown names.
 
@@ -70,13 +77,14 @@ class DisplayedResult:
         kind = type(self).__name__
         return kind if pair is None else f"{kind} of {str(pair)[1:-1].removeprefix('GearPair ')}"
 
-    def plot(self) -> Figure:
+    def plot(self, *variables: object) -> Figure:
         """Draw the figure of this kind of result.
 
         Raises
         ------
-        ParameterError : this kind of result has no figure
+        ParameterError : this kind of result has no figure, or a variable is named
         """
+        no_variables(variables)
         return figure_of(self)
 
     def __repr__(self) -> str:

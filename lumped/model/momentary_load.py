@@ -11,7 +11,7 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 
-from lumped.errors import NumericalError
+from lumped.errors import SlowPairError
 from lumped.mesh.motion import WORK, Body, CycleSpan, Run, run_cycles
 from lumped.mesh.records import CONTACT, Records
 from lumped.mesh.tables import CyclePairs, MeshTables, cycle_pairs
@@ -38,13 +38,13 @@ _MOST_STEPS = 65_536
 def steps_of(system: LTVSystem) -> int:
     """Number of steps in a mesh cycle that the fastest vibration needs.
 
-    NumericalError where they are too many.
+    SlowPairError where they are too many.
     """
     swings = fastest_frequency(system) * system.period / (2.0 * math.pi)
     if _FEWEST * swings > _MOST_STEPS:
         rpm = system.pair.operating.pinion_speed * 30.0 / math.pi
         least = rpm * _FEWEST * swings / _MOST_STEPS
-        raise NumericalError(
+        raise SlowPairError(
             f"At {rpm:.4g} rpm a mesh cycle lasts {swings:.0f} vibrations of the fastest mode, too many to "
             f"follow one by one: contact='unilateral' needs {least:.3g} rpm or more. "
             "Use contact='linear', or static_transmission_error: so slow a pair hardly vibrates."

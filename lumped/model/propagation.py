@@ -8,7 +8,7 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 
-from lumped.errors import NumericalError
+from lumped.errors import NumericalError, SlowPairError
 from lumped.gauss_legendre import ButcherTableau, gauss_tableau
 from lumped.model.kernels import FreeSteps, chained, merged, propagate, states_along
 from lumped.model.mesh_cycle import is_edge
@@ -358,7 +358,7 @@ def _step_grid(system: LTVSystem, outputs: FloatArray, every_step: bool, step_an
     marks = _distinct(np.union1d(marks, breaks[1:-1][short]), system)
     parts = np.maximum(1.0, np.ceil(np.diff(marks) / largest))
     if not parts.sum() <= _MAX_STEPS:
-        raise NumericalError(
+        raise SlowPairError(
             f"A mesh cycle of {period:.3g} s takes {parts.sum():.3g} steps at the fastest vibration, more "
             f"than {_MAX_STEPS}: raise the speed, or lower stiffness or damping where they are extreme."
         )

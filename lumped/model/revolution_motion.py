@@ -6,7 +6,7 @@ Sources: docs/theory/teeth.md, "Motion", "Brake torque".
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 from functools import cached_property
@@ -19,7 +19,9 @@ from lumped.mesh.tables import MeshTables
 from lumped.model.linear_or_unilateral import ContactArgument
 from lumped.model.mesh_cycle import PairState
 from lumped.model.periodic_system import LTVSystem
+from lumped.model.propagation import fastest_frequency
 from lumped.model.results import PlainMotion, labelled, peaks_to_peaks, response
+from lumped.model.steady import SWINGING
 from lumped.model.swing import swing
 from lumped.quasi_static.contacts import contact_of
 from lumped.schema.meeting_teeth import teeth_of_pairs
@@ -80,6 +82,8 @@ class RevolutionMotion:
     first : mesh cycle at the first time
     stiffness : (k,) stiffness of the mesh in the linear form [N/m]; None: the sum over pairs that carry load
     between : part of the peak to peak of each variable that the outputs miss, with like teeth [m]
+    resolved_peak_to_peak : name -> peak to peak from outputs that resolve the fastest vibration [m]. Empty:
+        the outputs of the motion itself are the closest
     """
 
     pair: GearPair
@@ -99,6 +103,7 @@ class RevolutionMotion:
     first: int = 0
     stiffness: FloatArray | None = None
     between: dict[str, float] = field(default_factory=dict)
+    resolved_peak_to_peak: dict[str, float] = field(default_factory=dict)
 
     @property
     def period(self) -> int:
@@ -253,12 +258,31 @@ def _of_period(motion: RevolutionMotion, values: dict[str, FloatArray]) -> dict[
         "closure": motion.closure,
         "error_estimate": motion.error,
     }
-    closed = np.append(motion.time, motion.period * motion.system.period)
-    names = ("dte", "x_p", "x_g", "y_p", "y_g")
+    sizes = motion.resolved_peak_to_peak or swings_of_period(
+        motion.system, motion.time, values, motion.period
+    )
+    attributes |= {f"{name}_peak_to_peak": sizes[name] + motion.between.get(name, 0.0) for name in SWINGING}
+    return attributes
+
+
+def swings_of_period(
+    system: LTVSystem, time: FloatArray, values: Mapping[str, FloatArray], cycles: int
+) -> dict[str, float]:
+    """Return the peak to peak of each variable of ``SWINGING`` over a period of mesh cycles [m].
+
+    Extremes between two outputs count where the outputs resolve the fastest vibration. Where they do not, the
+    rate at an output says nothing about the next output: then the outputs alone count.
+    """
+    closed = np.append(time, cycles * system.period)
+    if not resolves(system, time.size // cycles):
+        return {name: float(np.ptp(values[name])) for name in SWINGING}
     periods, rates = (
         np.array([np.append(values[key], values[key][0]) for key in keys])
-        for keys in (names, [f"{name}_dot" for name in names])
+        for keys in (SWINGING, [f"{name}_dot" for name in SWINGING])
     )
-    for name, difference in zip(names, peaks_to_peaks(closed, periods, rates).tolist(), strict=True):
-        attributes[f"{name}_peak_to_peak"] = difference + motion.between.get(name, 0.0)
-    return attributes
+    return dict(zip(SWINGING, peaks_to_peaks(closed, periods, rates).tolist(), strict=True))
+
+
+def resolves(system: LTVSystem, samples: int) -> bool:
+    """Return whether ``samples`` outputs in a mesh cycle are two or more in each vibration."""
+    return fastest_frequency(system) * system.period <= math.pi * samples

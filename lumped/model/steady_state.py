@@ -23,6 +23,7 @@ from lumped.model.unilateral_motion import unilateral_motion
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.meeting_teeth import period_of
 from lumped.schema.pair import GearPair
+from lumped.typing import Progress, unheard
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -87,8 +88,12 @@ def periodic_motion(
     supports: Supports | None = None,
     samples_per_cycle: int | None = None,
     as_printed: Collection[int] = (),
+    progress: Progress = unheard,
 ) -> PlainMotion:
-    """Return the motion of ``steady_state``, which has the same arguments and errors, as plain arrays."""
+    """Return the motion of ``steady_state``, which has the same arguments and errors, as plain arrays.
+
+    ``progress`` is called with the finished fraction and what is being done, of a unilateral motion.
+    """
     form = motion_form(pair, contact)
     supports = supports_of(pair, supports)
     if samples_per_cycle is not None:
@@ -101,7 +106,7 @@ def periodic_motion(
     if form is MotionForm.LINEAR_OWN_TEETH:
         motion = linear_motion(pair, count, supports)
     else:
-        motion = unilateral_motion(pair, count, supports)
+        motion = unilateral_motion(pair, count, supports, progress=progress)
     return plain_motion(motion, partial(provenance, pair, samples_per_cycle=count, contact=contact))
 
 

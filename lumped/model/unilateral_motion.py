@@ -23,6 +23,7 @@ import numpy as np
 
 from lumped.errors import NumericalError
 from lumped.mesh.motion import Run
+from lumped.model.equations import COORDINATES
 from lumped.model.mesh_cycle import MeshCycle
 from lumped.model.momentary_load import (
     MomentaryRuns,
@@ -33,13 +34,14 @@ from lumped.model.momentary_load import (
 )
 from lumped.model.period_closure import Closed, close_period
 from lumped.model.periodic_system import LTVSystem, Supports
-from lumped.model.revolution_motion import Origin, RevolutionMotion, Touch
+from lumped.model.propagation import fastest_frequency
+from lumped.model.revolution_motion import Origin, RevolutionMotion, Touch, resolves, swings_of_period
 from lumped.model.solution import static_deflection
 from lumped.model.static_cycle import StaticCycle
 from lumped.model.steady import UNSTABLE, PeriodicSolution, periodic_solution
 from lumped.model.tooth_laws import ToothLaws
 from lumped.schema.pair import GearPair
-from lumped.typing import BoolArray, FloatArray, IntArray
+from lumped.typing import BoolArray, FloatArray, IntArray, Progress, unheard
 
 #: Largest angle of the fastest vibration in a step of the linear motion from which the search starts [rad].
 _START_ANGLE = 2.0
@@ -66,9 +68,14 @@ _MOST_STEPS = 5_000_000
 #: Mesh cycles of the longest motion that is sought. A run is compared with itself over so many times as many.
 _MOST_CYCLES = 8
 _COMPARED = 8
-#: Relative change after some cycles that counts as a repetition; outputs in a cycle of a run that settles.
+#: Relative change after some cycles that counts as a repetition; the same where a disturbance fades within a
+#: cycle: then rounding alone remains, which grows with the number of steps, 1e-5 at 60,000 steps.
 _REPEATS = 1e-6
+_REPEATS_OF_SLOW = 1e-4
+#: Outputs in a cycle of a run that settles.
 _OUTPUTS = 16
+#: Angle of the fastest vibration between two outputs from which a peak to peak is taken [rad].
+_OUTPUT_ANGLE = 1.5
 #: Teeth that differ: share of a start that may remain when the record begins, most cycles for that, and
 #: largest mismatch after the period, over the largest displacement, that counts as periodic.
 _START_FADED = 1e-11
@@ -292,7 +299,7 @@ class Shooting:
             return over_period
 
         rough = close_period(over(self.coarse), unknowns, sizes, slopes, closed=_NEARLY_CLOSED, most=most)
-        if rough.mismatch > _NEARLY_CLOSED:
+        if rough.mismatch > max(_NEARLY_CLOSED, accepted):
             raise NumericalError("No periodic motion that follows the momentary load is near this one.")
         fine = close_period(over(self.fine), rough.unknowns, sizes, rough.derivatives, closed=_CLOSED)
         if fine.mismatch > accepted:
@@ -335,6 +342,7 @@ class Shooting:
             error=float(np.abs(coarse_dte - dte[:: self.every]).max() / np.abs(dte).max()),
             spectral_radius=radius,
             origin=Origin.LINEAR,
+            resolved_peak_to_peak=self._resolved_peak_to_peak(closed.unknowns, -rate),
         )
 
     def close_by(self) -> RevolutionMotion | None:
@@ -357,6 +365,25 @@ class Shooting:
         system = self.system
         return replace(self, system=replace(system, cycle=MeshCycle.of(system.pair)))
 
+    def _resolved_peak_to_peak(self, unknowns: FloatArray, rate: float) -> dict[str, float]:
+        """Peak to peak from a run with outputs that resolve the fastest vibration [m].
+
+        Empty where the outputs of the motion resolve it.
+        """
+        system = self.system
+        if resolves(system, self.samples):
+            return {}
+        angle = fastest_frequency(system) * system.period
+        outputs = self.samples * math.ceil(angle / (_OUTPUT_ANGLE * self.samples))
+        tables = momentary_tables(self.laws, system, 1.0 / steps_of(system), outputs)
+        states = self.run(unknowns, MomentaryRuns(self.pair, system, tables), rate=rate)[1].states
+        z, rates = system.gear_motion(states)
+        values = {"dte": z @ system.structure.deflection, "dte_dot": rates @ system.structure.deflection}
+        for number, name in enumerate(COORDINATES):
+            values |= {name: z[:, number], f"{name}_dot": rates[:, number]}
+        time = np.arange(len(states)) / outputs * system.period
+        return swings_of_period(system, time, values, self.cycles)
+
     def near(self, start: FloatArray, linear: PeriodicSolution) -> tuple[Closed[Run] | None, float]:
         """Close the period near a linear motion; return the result, or None, and a spectral radius near
         there.
@@ -370,7 +397,9 @@ class Shooting:
             return self.closed(start, self.derivatives(start)), 1.0
         return None, 1.0
 
-    def settled(self, unknowns: FloatArray, radius: float = 1.0) -> RevolutionMotion:
+    def settled(
+        self, unknowns: FloatArray, radius: float = 1.0, progress: Progress = unheard
+    ) -> RevolutionMotion:
         """Return the stable motion, of at most eight mesh cycles, to which a run settles.
 
         Each run is compared with itself after 1 to 8 cycles. Broyden's method then looks for a stable motion
@@ -381,6 +410,7 @@ class Shooting:
         unknowns : start of the first run
         radius : spectral radius of the linear motion. The smaller it is, the shorter is the first run: the
             mesh cycle of a slow pair has many steps, and its vibrations fade within the cycle
+        progress : called with the finished share of the runs before each run
 
         Raises
         ------
@@ -392,7 +422,9 @@ class Shooting:
         m = deflection.size
         tables = momentary_tables(self.laws, self.system, 2.0 / steps_of(self.system), _OUTPUTS)
         runs = MomentaryRuns(self.pair, self.system, tables)
-        for settling_cycles in _settling_runs(first, steps_of(self.system) // 2):
+        counts = list(_settling_runs(first, steps_of(self.system) // 2))
+        for number, settling_cycles in enumerate(counts):
+            progress(sum(counts[:number]) / sum(counts), f"run over {settling_cycles} mesh cycles")
             cycles = settling_cycles + compared
             _, settling = self.run(unknowns, runs, cycles=cycles, recorded=compared)
             if not np.isfinite(settling.end).all():
@@ -400,10 +432,10 @@ class Shooting:
             starts = np.vstack([settling.states[::_OUTPUTS], settling.end]) @ self.to_relative.T
             unknowns = np.append(starts[-1], unknowns[-1])
             sizes, _ = self.scales(unknowns)
-            repeated = (np.abs(starts[-2::-1] - starts[-1]) <= _REPEATS * sizes[:-1]).all(axis=1)
+            allowed = _REPEATS_OF_SLOW if radius < _FADED else _REPEATS
+            repeated = (np.abs(starts[-2::-1] - starts[-1]) <= allowed * sizes[:-1]).all(axis=1)
             repeats = np.flatnonzero(repeated[:_MOST_CYCLES])[:1] + 1
-            # Where pairs touch within long steps, a slow pair repeats to a part of a millionth and no better.
-            accepted = _REPEATS if repeats.size else _ACCEPTED
+            accepted = allowed if repeats.size else _ACCEPTED
             swing = float(np.ptp(settling.states[:, :m] @ deflection))
             if not repeats.size and radius < _FADED:
                 continue  # settling is fast, so no motion nearby is waiting to be closed
@@ -448,7 +480,12 @@ def outputs_for_one(samples: int) -> int:
 
 
 def unilateral_motion(
-    pair: GearPair, samples: int, supports: Supports = "springs", *, settles: bool = True
+    pair: GearPair,
+    samples: int,
+    supports: Supports = "springs",
+    *,
+    settles: bool = True,
+    progress: Progress = unheard,
 ) -> RevolutionMotion:
     """Periodic motion of a pair with unilateral contact by momentary load, with the teeth of the pair.
 
@@ -463,17 +500,20 @@ def unilateral_motion(
     supports : as of ``periodic_system``
     settles : whether a run settles where Broyden's method finds no stable motion. If not, the unstable motion
         is returned
+    progress : called with the finished fraction and what is being done
 
     Raises
     ------
     NumericalError : no such motion is found
     """
     if pair.healthy is not pair:
-        return settled_motion(pair, samples, supports)
-    return motion_of_shooting(Shooting.of(pair, samples, supports), settles=settles)
+        return settled_motion(pair, samples, supports, progress=progress)
+    return motion_of_shooting(Shooting.of(pair, samples, supports), settles=settles, progress=progress)
 
 
-def motion_of_shooting(shooting: Shooting, *, settles: bool = True) -> RevolutionMotion:
+def motion_of_shooting(
+    shooting: Shooting, *, settles: bool = True, progress: Progress = unheard
+) -> RevolutionMotion:
     """Periodic motion of like teeth by ``shooting`` from its linear motion, see ``unilateral_motion``.
 
     Raises
@@ -486,6 +526,7 @@ def motion_of_shooting(shooting: Shooting, *, settles: bool = True) -> Revolutio
             return close
         shooting = shooting.with_fitted_laws()
     radius_of_linear = 1.0
+    progress(0.0, "linear motion")
     try:
         linear = periodic_solution(shooting.system, np.zeros(1), estimate_error=False)
     except NumericalError:  # a multiplier at +1
@@ -493,18 +534,26 @@ def motion_of_shooting(shooting: Shooting, *, settles: bool = True) -> Revolutio
     else:
         radius_of_linear = linear.spectral_radius
         start = shooting.unknowns(linear.states[0], linear.pinion_torque, linear.brake_torque)
+        progress(0.1, "motion near the linear one")
         near, radius = shooting.near(start, linear)
         if near is not None:
+            progress(0.25, "stability")
             motion = shooting.motion(near, radius)
             if motion.spectral_radius <= UNSTABLE or not settles:
                 return motion
     if not settles:
         raise NumericalError("No periodic motion that follows the momentary load is near the linear one.")
-    return shooting.settled(start, radius_of_linear)
+    return shooting.settled(
+        start, radius_of_linear, lambda share, stage="", /: progress(0.3 + 0.7 * share, stage)
+    )
 
 
 def settled_motion(
-    pair: GearPair, samples: int, supports: Supports = "springs", steps: int | None = None
+    pair: GearPair,
+    samples: int,
+    supports: Supports = "springs",
+    steps: int | None = None,
+    progress: Progress = unheard,
 ) -> RevolutionMotion:
     """Periodic motion of a pair whose teeth differ, with unilateral contact.
 
@@ -517,7 +566,9 @@ def settled_motion(
     samples : outputs a mesh cycle
     supports : as of ``periodic_system``
     steps : least number of steps in a mesh cycle; by default the number that the fastest vibration needs
+    progress : called with the finished fraction and what is being done
     """
+    progress(0.0, "twin with like teeth")
     touch = Touch.MOMENTARY if pair.mesh.contact == "loaded" else Touch.WINDOWS
     system = LTVSystem.of(pair.healthy, "full", supports=supports)
     try:
@@ -536,6 +587,7 @@ def settled_motion(
     m = weights.size
     coarse = np.zeros(0)
     for part in (4, 1):
+        progress(0.1 if part > 1 else 0.3, "run with long steps" if part > 1 else "run")
         tables = momentary_tables(laws, system, part / steps, samples)
         torques = driving * system.torque_pinion + brake * system.torque_gear
         count = settling + tables.period

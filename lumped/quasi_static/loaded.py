@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lumped.errors import NumericalError, refuse
+from lumped.errors import BeyondFlanksError, NumericalError, refuse
 from lumped.mesh.damper import FULL_DAMPING, damping_law
 from lumped.mesh.records import CONTACT, EXACT, FLANKS, ContactLaw, Records
 from lumped.mesh.statics import Phases, middle_contacts, static_approaches, tips_minus_edges, workspace
@@ -484,7 +484,7 @@ def touching(pair: GearPair) -> Touching:
         if undercut:
             fields = " and ".join(f"{name}.profile_shift" for name in undercut)
             action = f"the flanks are undercut, so raise {fields}, or lower the torque"
-        raise NumericalError(
+        raise BeyondFlanksError(
             f"Under {pair.operating.pinion_torque:g} N m a tooth pair touches more than {_REACH:g} base "
             f"pitches beyond its flanks: {action}."
         )

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lumped.arguments import real_numbers, whole_number
 from lumped.display.result import DisplayedResult
-from lumped.errors import NumericalError, refuse
+from lumped.errors import BeyondFlanksError, refuse
 from lumped.labelling import labelled_dataset, provenance
 from lumped.mesh.unloaded import couplings
 from lumped.path_of_contact import pair_stiffness
@@ -188,7 +188,7 @@ def _check_reach(mesh: MeshPositions, load: FloatArray, low: float, high: float,
     near = 0.98 * REACH * pitch
     far = (mesh.xi < low - near) | (mesh.xi > high + near)
     if np.any(load[:, far] > 0.0):
-        raise NumericalError(
+        raise BeyondFlanksError(
             f"Teeth deflect so far that pairs touch {0.98 * REACH:.2f} base pitches outside the path of "
             "contact: lower the torque, check the stiffness, or set extended=False."
         )

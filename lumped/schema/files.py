@@ -77,7 +77,10 @@ def load_gear_pair(source: AnyPair) -> GearPair:
         return _from_file(source)
     if not isinstance(source, Mapping) or hasattr(source, "dims"):  # a dataset is a mapping, too
         allowed = "a preset name, a TOML file, a mapping or a GearPair"
-        raise refuse("pair", type(source).__name__, allowed, "Give one of these.")
+        action = "Give one of these."
+        if isinstance(source, (list, tuple)):
+            action = "Give one pair: [function(one) for one in pairs], or compare(*pairs)."
+        raise refuse("pair", type(source).__name__, allowed, action)
     return validated(source, "mapping")
 
 

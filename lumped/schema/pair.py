@@ -57,6 +57,9 @@ from lumped.schema.shafts import Shafts
 
 #: Name that a pair does not have -> what to write.
 _INSTEAD = {
+    "ratio": "pair.gear.teeth / pair.pinion.teeth",
+    "gear_ratio": "pair.gear.teeth / pair.pinion.teeth",
+    "summary": "print(pair), pair.geometry, or pair.to_toml()",
     **dict.fromkeys(("save", "write", "to_file"), "Path(...).write_text(pair.to_toml())"),
     **dict.fromkeys(("to_dict", "as_dict"), "pair.to_mapping()"),
     **dict.fromkeys(("replace", "update", "set", "change", "vary"), "pair.with_(speed=2000)"),

@@ -29,16 +29,22 @@ from typing import Any
 import numpy as np
 
 from lumped.errors import NumericalError, ParameterError
+from lumped.schema.pair import GearPair
 from validation.exchange.new_pair_file import new_pair
 from validation.prediction.motion import Motion, Prediction, predict
+from validation.reporting.effort import QUICK
+from validation.reporting.page_without_motion import page_without_motion
+from validation.reporting.results import Results
 
 TARGET = Path(__file__).parents[2] / "docs" / "verification" / "answers.json"
 PAIRS = 1000
 SEED = 2026
 #: Kinds of answers.
-KINDS = ("prediction", "linear motion", "refused", "no motion", "exception")
+KINDS = ("prediction", "linear motion", "at rest", "refused", "exception")
 #: A dynamic factor below 1 by less than this is rounding: where nothing vibrates the factor is 1.
 _ROUNDING = 1e-9
+#: Least rows of page 1 of a pair without a motion: force, stiffness and one more.
+_LEAST_ROWS = 3
 
 
 @dataclass(frozen=True)
@@ -78,7 +84,7 @@ class Answer:
     Attributes
     ----------
     kind : one of ``KINDS``
-    text : the motion, the refused field, the reason, or the exception
+    text : the motion, the refused field, the reason or headline of page 1, or the exception
     request : the request as options
     seconds : processor time
     """
@@ -131,6 +137,7 @@ def _outcome(request: Request) -> tuple[str, str]:
     """Kind and text of an answer."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
+        pair: GearPair | None = None
         try:
             pair = new_pair(
                 request.teeth,
@@ -144,9 +151,25 @@ def _outcome(request: Request) -> tuple[str, str]:
         except ParameterError as error:
             return "refused", error.problems[0].field
         except NumericalError as error:
-            return "no motion", str(error)
+            assert pair is not None
+            return _at_rest(pair, error)
         except Exception as error:  # noqa: BLE001  (every other exception is a fault, which the table shows)
             return "exception", f"{type(error).__name__}: {error}"
+
+
+def _at_rest(pair: GearPair, error: NumericalError) -> tuple[str, str]:
+    """Kind and text of a pair without a motion, by page 1 of its report. The page must have numbers."""
+    try:
+        page = page_without_motion(Results(pair, QUICK), error)
+    except Exception as fault:  # noqa: BLE001  (every exception is a fault, which the table shows)
+        return "exception", f"page 1: {type(fault).__name__}: {fault}"
+    wrong = [row.key for row in page.numbers if not math.isfinite(row.value)]
+    if wrong or len(page.numbers) < _LEAST_ROWS or not page.actions:
+        return (
+            "exception",
+            f"page 1 has {len(page.numbers)} rows, {len(page.actions)} actions, wrong: {wrong}",
+        )
+    return "at rest", page.headline
 
 
 def _judged(prediction: Prediction) -> tuple[str, str]:
@@ -187,7 +210,7 @@ def main(arguments: list[str] | None = None) -> int:
     start = time.perf_counter()
     result = answers(options.pairs, options.seed, options.processes)
     for one in result:
-        if one.kind not in ("prediction", "refused"):
+        if one.kind not in ("prediction", "refused", "at rest"):
             print(f"{one.kind}: {one.request}\n  {one.text}")
     counts = Counter(one.kind for one in result)
     print(", ".join(f"{number} {kind}" for kind, number in counts.most_common()), end="; ")

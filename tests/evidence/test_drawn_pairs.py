@@ -19,7 +19,7 @@ def test_the_stored_run_is_the_draw_and_has_no_exception():
     assert all(row["text"] for row in rows)
 
 
-@pytest.mark.parametrize("number", [0, 3, 5, 17, 26, 27])
+@pytest.mark.parametrize("number", [0, 3, 5, 17, 26, 27, 999])
 def test_a_drawn_pair_has_the_stored_answer(number):
     """One of each kind that takes little time: predictions, refused bearings, no contact ratio."""
     request = list(requests(number + 1))[number]

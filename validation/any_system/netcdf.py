@@ -6,10 +6,12 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import h5py
 import xarray as xr
 
 from validation.check.reading.units import si_factor
-from validation.files.matlab import check_size
+from validation.files.hdf5 import check_hdf5
+from validation.files.matlab import MOST_BYTES, check_size
 
 
 def netcdf_arrays(path: Path, known: Callable[[str], bool]) -> dict[str, Any]:
@@ -29,6 +31,8 @@ def netcdf_arrays(path: Path, known: Callable[[str], bool]) -> dict[str, Any]:
     ParameterError : a unit that is not one of time
     """
     arrays: dict[str, Any] = {}
+    if h5py.is_hdf5(path):
+        check_hdf5(path, MOST_BYTES // 8)
     with xr.open_dataset(path, decode_times=False) as file:
         check_size(sum(8 * variable.size for variable in file.variables.values()))
         for name, variable in file.variables.items():

@@ -16,7 +16,7 @@ import numpy as np
 
 from lumped.arguments import real_number
 from lumped.display.progress import reported_to, shows_progress
-from lumped.display.result import DisplayedResult
+from lumped.display.result import DisplayedResult, no_variables
 from lumped.errors import NumericalError, refuse
 from lumped.labelling import labelled_dataset
 from lumped.model.averaged import natural_frequencies
@@ -265,13 +265,14 @@ class Check(DisplayedResult):
             | {"shift": self.problem.misfit.shift, "misfit": self.misfit, "verdict": self.verdict.value},
         )
 
-    def plot(self) -> Figure:
+    def plot(self, *variables: object) -> Figure:
         """Draw both motions over the mesh phase, or both values over speed.
 
         Raises
         ------
         ParameterError : only static quantities were given
         """
+        no_variables(variables)
         from validation.plots.check import motion_figure, speed_figure
 
         if self.problem is not None:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from validation.commands import options as opt
+from validation.commands.cluster import cluster_of
 from validation.commands.terminal import guarded, note, print_json, progress_bar, show, stdout
 
 if TYPE_CHECKING:
@@ -47,6 +48,8 @@ def compare(
     samples: opt.Samples = None,
     seed: int = 1,
     seconds: opt.Seconds = None,
+    cluster: opt.Cluster = None,
+    wait_seconds: opt.WaitSeconds = None,
     supports: opt.Supports = None,
     as_json: opt.Json = False,
 ) -> None:
@@ -60,6 +63,7 @@ def compare(
     spurcheck compare mypair.toml other.toml
     spurcheck compare mypair.toml --variant bearings.stiffness=3e8 --variant 'oil=vg220; temperature=60'
     spurcheck compare mypair.toml --variant torque=60 --samples 512 -o machines.nc -o differences.png
+    spurcheck compare mypair.toml other.toml --samples 4096 --cluster tcp://head:8786
 
     Parameters
     ----------
@@ -68,9 +72,10 @@ def compare(
     from validation.prediction.compare import compare as run
 
     names, gear_pairs = _variants(pairs, variant, speed=speed, torque=torque, law=law, settings=settings)
-    limits = opt.limits_of_samples(samples, seconds)
-    with progress_bar("possible machines") as tell:
-        comparison = run(*gear_pairs, names=names, seed=seed, supports=supports, progress=tell, **limits)
+    limits = opt.limits_of_samples(samples, seconds, cluster)
+    options: dict[str, Any] = {"names": names, "seed": seed, "supports": supports, **limits}
+    with cluster_of(cluster, wait_seconds) as executor, progress_bar("possible machines") as tell:
+        comparison = run(*gear_pairs, executor=executor, progress=tell, **options)
     if as_json:
         print_json(_as_json(comparison))
     else:

@@ -23,6 +23,7 @@ _ALIASES: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(("--n", "--number", "--count", "--points"), ("--samples",)),
     **dict.fromkeys(("--random-seed", "--rng"), ("--seed",)),
     **dict.fromkeys(("--silent", "--no-progress"), ("--quiet",)),
+    **dict.fromkeys(("--width", "--facewidth", "-b"), ("--face-width",)),
 }
 #: Option that names a kind of file -> suffix. It means --output where the command writes such a file.
 _SUFFIXES = {
@@ -58,6 +59,15 @@ _SENTENCES = {
     **dict.fromkeys(
         ("--verbose", "-v", "--debug", "--log"), "Notes and progress are shown without it, unless --quiet"
     ),
+    **dict.fromkeys(
+        ("--centre-distance", "--center-distance", "--axis-distance"), "Type: --set centre_distance=80 (mm)"
+    ),
+    **dict.fromkeys(
+        ("--helix", "--helix-angle", "--beta"), "Gears are spur gears: a helix angle is not modelled"
+    ),
+    **dict.fromkeys(
+        ("--class", "--tolerance-class", "--iso-1328"), "Type: --set gears.deviations.tolerance_class=6"
+    ),
     **dict.fromkeys(("--language", "--lang", "--locale"), "Reports are in English"),
     **dict.fromkeys(
         ("--dt", "--steps", "--step", "--timestep", "--rtol", "--method", "--solver", "--integrator"),
@@ -80,6 +90,7 @@ COMMANDS = {
     "plot": "spurcheck simulate PAIR --steady -o motion.png; in Python: spurcheck.plot(result)",
     "convert": "spurcheck init --from-rexs FILE, or spurcheck export PAIR -o FILE",
     "import": "spurcheck init --from-rexs FILE",
+    **dict.fromkeys(("calibrate", "fit", "identify"), "spurcheck report PAIR --record FILE"),
     "spectrum": "spurcheck teeth PAIR; in Python: spurcheck.order_spectrum(motion)",
     "campbell": "spurcheck stability PAIR; in Python: spurcheck.campbell(pair)",
 }
@@ -102,6 +113,8 @@ def about_option(name: str, context: Any) -> str:
     output = options.get("--output")
     if output is not None and name in _SUFFIXES and _SUFFIXES[name] in (output.help or ""):
         return f" Type: --output NAME{_SUFFIXES[name]}"
+    if name == "--format" and any(suffix in (output.help if output else "") for suffix in (".nc", ".mat")):
+        return f" The ending of --output chooses the format: {_meaning(output)}"
     if name in _SENTENCES:
         return f" {_SENTENCES[name]}"
     word = name.lstrip("-").replace("-", "_")

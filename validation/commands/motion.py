@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from validation.commands import options as opt
+from validation.commands.cluster import cluster_of
 from validation.commands.terminal import guarded, note, print_json, progress_bar, show, stderr, stdout
 from validation.files.formatting import number, quantity
 
@@ -176,6 +177,8 @@ def uncertainty(
     samples: opt.Samples = None,
     seed: int = 1,
     seconds: opt.Seconds = None,
+    cluster: opt.Cluster = None,
+    wait_seconds: opt.WaitSeconds = None,
     supports: opt.Supports = None,
 ) -> None:
     r"""Predict a gear pair many times while its uncertain inputs vary.
@@ -186,6 +189,7 @@ def uncertainty(
     [bold]Examples[/bold]
     spurcheck uncertainty my_pair.toml
     spurcheck uncertainty my_pair.toml --samples 512 -o samples.nc
+    spurcheck uncertainty my_pair.toml --samples 4096 --cluster local:8 -o samples.nc
 
     Parameters
     ----------
@@ -197,9 +201,9 @@ def uncertainty(
     from validation.prediction.uncertainty import TEETH, transmission_error
     from validation.prediction.uncertainty import uncertainty as run
 
-    limits = opt.limits_of_samples(samples, seconds)
-    with progress_bar("uncertain inputs") as tell:
-        predictions = run(pair, seed=seed, supports=supports, progress=tell, **limits)
+    limits = opt.limits_of_samples(samples, seconds, cluster)
+    with cluster_of(cluster, wait_seconds) as executor, progress_bar("uncertain inputs") as tell:
+        predictions = run(pair, seed=seed, supports=supports, executor=executor, progress=tell, **limits)
     rows = (
         (
             words,

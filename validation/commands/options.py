@@ -91,6 +91,24 @@ Seconds = Annotated[
         show_default=f"{SAMPLE_SECONDS:.0f} without --samples",
     ),
 ]
+Cluster = Annotated[
+    str | None,
+    typer.Option(
+        "--cluster",
+        metavar="ADDRESS",
+        help="Dask cluster that computes: the address of its scheduler, tcp://HOST:8786, or local:8, a "
+        "cluster of 8 workers on this machine.",
+        show_default=False,
+    ),
+]
+WaitSeconds = Annotated[
+    float | None,
+    typer.Option(
+        "--wait-seconds",
+        help="Longest time in which the cluster has no worker, in seconds; default 300.",
+        show_default=False,
+    ),
+]
 Json = Annotated[bool, typer.Option("--json", help="Print the numbers as JSON (SI units) and nothing else.")]
 Force = Annotated[bool, typer.Option("--force", help="Overwrite what is there already.")]
 ForceFolder = Annotated[
@@ -98,11 +116,21 @@ ForceFolder = Annotated[
 ]
 
 
-def limits_of_samples(samples: int | None, seconds: float | None) -> dict[str, Any]:
+def limits_of_samples(
+    samples: int | None, seconds: float | None, cluster: str | None = None
+) -> dict[str, Any]:
     """Return the number of samples and the time limit.
 
-    If the user states a number of samples, all samples are computed, unless --seconds sets a limit.
+    If the user states a number of samples, all samples are computed, unless --seconds sets a limit. On a
+    cluster all samples are computed.
     """
+    if cluster is not None:
+        if seconds is not None:
+            from lumped.errors import refuse
+
+            action = "Leave it out, and state --samples: a cluster computes all of them."
+            raise refuse("seconds", seconds, "none with --cluster", action)
+        return {"samples": SAMPLES if samples is None else samples, "seconds": None}
     if samples is None:
         return {"samples": SAMPLES, "seconds": SAMPLE_SECONDS if seconds is None else seconds}
     return {"samples": samples, "seconds": seconds}

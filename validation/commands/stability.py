@@ -7,11 +7,13 @@ from typing import TYPE_CHECKING, Literal
 import typer
 
 from validation.commands import options as opt
+from validation.commands.cluster import cluster_of
 from validation.commands.terminal import FAILED, guarded, print_json, progress_bar, show, stdout
 from validation.files.formatting import number
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
+    from concurrent.futures import Executor
 
     import xarray as xr
     from matplotlib.figure import Figure
@@ -35,6 +37,8 @@ def stability(
     axis: list[str] | None = None,
     tongues: bool = False,
     prove: bool = False,
+    cluster: opt.Cluster = None,
+    wait_seconds: opt.WaitSeconds = None,
     supports: opt.Supports = None,
     as_json: opt.Json = False,
 ) -> None:
@@ -49,6 +53,8 @@ def stability(
     --tongues -o chart.nc -o chart.pdf
     spurcheck stability my_pair.toml --prove -o proven.png
     spurcheck stability --view boundaries --axis friction_coefficient=0:0.2:9 -o boundaries.nc
+    spurcheck stability my_pair.toml --axis torque=20:90:40 --axis speed_rpm=500:20000:400
+    --cluster tcp://head:8786 -o chart.nc
     spurcheck stability my_pair.toml --supports springs --axis speed_rpm=500:20000:1000 -o on_springs.png
 
     Parameters
@@ -67,39 +73,43 @@ def stability(
     from floquet.gear.axes import GEAR_AXES, chart_axes
     from floquet.gear.multipliers import gear_pair_multipliers
     from floquet.gear.tongues import campbell
+    from lumped.errors import refuse
     from lumped.model.periodic_system import supports_of
 
     supports_used = supports_of(pair, supports)
     grid = opt.axes_values(axis, GEAR_AXES)
     _check(view, grid, files, tongues, prove, supports_used)
-    multipliers = gear_pair_multipliers(pair, supports=supports_used)
-    margin = 1.0 - multipliers.spectral_radius
-    if as_json:
-        point = {
-            "verdict": multipliers.verdict,
-            "spectral_radius": multipliers.spectral_radius,
-            "error": multipliers.error,
-        }
-        point |= {"certificate": multipliers.certificate, "margin": margin}
-        print_json({"gear_pair": pair.name, "supports": supports_used} | point)
-    else:
-        rows = {
-            "verdict": multipliers.verdict_words,
-            "largest multiplier": f"{multipliers.spectral_radius:.8f}",
-            "bound on its error": f"{number(multipliers.error, 2)} ({multipliers.certificate})",
-            "margin, 1 - largest multiplier": margin,
-        }
-        show(f"{pair.name} on {supports_used}: operating point", "quantity | >value", rows.items())
-    if files.paths or axis or tongues or prove or view != "chart":
-        if view == "chart":
-            files.write(*_chart(pair, grid, tongues, supports_used, prove))
-        elif view == "boundaries":
-            files.write(_boundaries(pair, grid, supports_used))
+    if cluster is not None and view != "chart":
+        raise refuse("--cluster", cluster, "--view chart", "Leave it out: this view takes a few seconds.")
+    with cluster_of(cluster, wait_seconds) as executor:
+        multipliers = gear_pair_multipliers(pair, supports=supports_used)
+        margin = 1.0 - multipliers.spectral_radius
+        if as_json:
+            point = {
+                "verdict": multipliers.verdict,
+                "spectral_radius": multipliers.spectral_radius,
+                "error": multipliers.error,
+            }
+            point |= {"certificate": multipliers.certificate, "margin": margin}
+            print_json({"gear_pair": pair.name, "supports": supports_used} | point)
         else:
-            speeds = grid.get("speed_rpm", chart_axes(pair, *_CHART)["speed_rpm"])
-            files.write(campbell(pair, speeds, supports=supports_used))
-    if multipliers.verdict not in STABLE:
-        raise typer.Exit(FAILED)
+            rows = {
+                "verdict": multipliers.verdict_words,
+                "largest multiplier": f"{multipliers.spectral_radius:.8f}",
+                "bound on its error": f"{number(multipliers.error, 2)} ({multipliers.certificate})",
+                "margin, 1 - largest multiplier": margin,
+            }
+            show(f"{pair.name} on {supports_used}: operating point", "quantity | >value", rows.items())
+        if files.paths or axis or tongues or prove or cluster or view != "chart":
+            if view == "chart":
+                files.write(*_chart(pair, grid, tongues, supports_used, prove, executor))
+            elif view == "boundaries":
+                files.write(_boundaries(pair, grid, supports_used))
+            else:
+                speeds = grid.get("speed_rpm", chart_axes(pair, *_CHART)["speed_rpm"])
+                files.write(campbell(pair, speeds, supports=supports_used))
+        if multipliers.verdict not in STABLE:
+            raise typer.Exit(FAILED)
 
 
 def _check(
@@ -141,7 +151,12 @@ def _check(
 
 
 def _chart(
-    pair: GearPair, axes: Mapping[str, FloatArray], tongues: bool, supports: opt.SupportsName, prove: bool
+    pair: GearPair,
+    axes: Mapping[str, FloatArray],
+    tongues: bool,
+    supports: opt.SupportsName,
+    prove: bool,
+    executor: Executor | None,
 ) -> tuple[xr.Dataset, Callable[[], Figure]]:
     from floquet import predicted_lines
     from floquet.gear.axes import GEAR_AXES, chart_axes
@@ -149,7 +164,9 @@ def _chart(
 
     grid = dict(axes) or chart_axes(pair, *_CHART)
     with progress_bar("stability chart") as tell:
-        chart = stability_chart(pair, grid, rtol=1e-8, prove=prove, supports=supports, progress=tell)
+        chart = stability_chart(
+            pair, grid, rtol=1e-8, prove=prove, supports=supports, executor=executor, progress=tell
+        )
     stable = chart["verdict"].to_numpy() > 0
     radius = chart["spectral_radius"]
     worst = radius.isel(radius.argmax(...))

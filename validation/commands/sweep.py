@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Annotated, NamedTuple
 import typer
 
 from validation.commands import options as opt
+from validation.commands.cluster import cluster_of
 from validation.commands.terminal import (
     FAILED,
     INTERRUPTED,
     fail,
     guarded,
-    note,
     progress_bar,
     show,
     stderr,
@@ -36,8 +36,8 @@ def sweep(
     resume: bool = False,
     retry_failed: bool = False,
     workers: int | None = None,
-    cluster: str | None = None,
-    wait_seconds: float | None = None,
+    cluster: opt.Cluster = None,
+    wait_seconds: opt.WaitSeconds = None,
     case_seconds: float | None = None,
     dry_run: bool = False,
 ) -> None:
@@ -64,9 +64,6 @@ def sweep(
     resume : Go on where an earlier run in that folder ended.
     retry_failed : With --resume: compute the failed cases again.
     workers : Worker processes; default: one per core. 0: this process, where a crash ends the sweep.
-    cluster ADDRESS : Dask cluster that computes the cases: the address of its scheduler, tcp://HOST:8786, or
-        local:8, a cluster of 8 workers on this machine.
-    wait_seconds : Longest time in which the cluster has no worker, in seconds; default 300.
     case_seconds : Longest time of a case in seconds on this machine; a longer one is ended and recorded.
     dry_run : Check the study, count its cases, estimate the time.
     """
@@ -145,21 +142,16 @@ def _place(workers: int | None, cluster: str | None, wait_seconds: float | None)
     from lumped.cache import cores
     from lumped.errors import refuse
 
-    if cluster is None:
-        if wait_seconds is not None:
-            raise refuse("wait_seconds", wait_seconds, "none without --cluster", "Leave it out.")
-        yield _Place(cores() if workers is None else workers)
-        return
-    if workers is not None:
+    if workers is not None and cluster is not None:
         action = (
             "Leave it out: all workers of the cluster compute. Write --cluster local:8 for 8 of them here."
         )
         raise refuse("workers", workers, "none with --cluster", action)
-    from validation.studies.cluster import WAIT_SECONDS, open_cluster
-
-    wait = WAIT_SECONDS if wait_seconds is None else wait_seconds
-    with open_cluster(cluster, wait_seconds=wait, tell=note) as opened:
-        yield _Place(0, opened)
+    with cluster_of(cluster, wait_seconds) as opened:
+        if opened is None:
+            yield _Place(cores() if workers is None else workers)
+        else:
+            yield _Place(0, opened)
 
 
 def _estimate(study: Study, place: _Place) -> None:

@@ -161,6 +161,8 @@ def guarded(command: Callable[..., None]) -> Callable[..., None]:
         "output": "--output",
         "supports": "--supports",
         "axes": "--axis",
+        "cluster": "--cluster",
+        "wait_seconds": "--wait-seconds",
     }
     keyword = functools.partial(inspect.Parameter, kind=inspect.Parameter.KEYWORD_ONLY)
     shown: list[inspect.Parameter] = []

@@ -3,6 +3,6 @@
 Names are imported on first use, so that the command line answers at once; ``__init__.pyi`` lists them.
 """
 
-import lazy_loader
+from lumped.public_names import public_names
 
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+__getattr__, __dir__, __all__ = public_names(__name__, __file__)

@@ -15,6 +15,7 @@ from lumped.model.averaged import averaged_state_space
 from lumped.model.periodic_system import Supports, on_springs
 from lumped.model.supports import Form
 from lumped.schema.files import AnyPair, load_gear_pair
+from validation.files.hdf5 import check_hdf5
 from validation.files.output import (
     COLUMN_DIMENSIONS,
     DATA_SUFFIXES,
@@ -95,6 +96,8 @@ def read_netcdf(path: str | Path) -> xr.Dataset:
     if not path.is_file():
         raise refuse("result", path, "a file that exists", "Check the path.")
     try:
+        if h5py.is_hdf5(path):
+            check_hdf5(path, _most_numbers(path))
         _check_content(path)
         # Times are seconds from the start, not dates; nothing is packed or masked.
         with xr.open_dataset(
@@ -111,12 +114,17 @@ def read_netcdf(path: str | Path) -> xr.Dataset:
         raise refuse("result", path, _OURS, reason) from None
 
 
+def _most_numbers(path: Path) -> int:
+    """Return the most numbers that a result file of this size can hold."""
+    return min(_MOST_NUMBERS, _MOST_UNPACKED * path.stat().st_size)
+
+
 def _check_content(path: Path) -> None:
     """Refuse a file with content that no result has, before any data are loaded.
 
     A small file may expand to terabytes, or may link to bytes of other files.
     """
-    most_numbers = min(_MOST_NUMBERS, _MOST_UNPACKED * path.stat().st_size)
+    most_numbers = _most_numbers(path)
     numbers = 0
     with h5py.File(path) as file:
         for name in file:

@@ -15,9 +15,10 @@ import math
 import warnings
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass, field
 from string import ascii_uppercase
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -26,6 +27,7 @@ from scipy.stats import binomtest
 import lumped
 from floquet.orbits.deadline import Deadline
 from lumped.arguments import real_number, whole_number
+from lumped.calls import checked_executor, results_of
 from lumped.display.progress import reported_to, shows_progress
 from lumped.errors import LawRangeWarning, NumericalError, SpurcheckError, refuse
 from lumped.labelling import Variable, labelled_dataset, provenance
@@ -39,6 +41,7 @@ from validation.prediction.motion import QUANTITIES, Motion, predicted
 from validation.prediction.uncertainty import (
     ALONE,
     LEAST_SAMPLES,
+    ONE_AT_A_TIME,
     PERCENTILES,
     TEETH,
     TEETH_SAMPLES,
@@ -104,6 +107,7 @@ def compare(
     seed: int = 1,
     supports: Supports | None = None,
     seconds: float | None = None,
+    executor: Executor | None = None,
     progress: ProgressRequest = None,
 ) -> xr.Dataset:
     """Return the share of all possible machines in which one variant of a gear pair is better than another.
@@ -121,6 +125,8 @@ def compare(
     supports : "springs" leaves shafts and their inputs out; by default the shafts of a variant that has them
     seconds : processor time after which no further machine begins [s]; a third of the time is for the inputs
         alone. ``LEAST_SAMPLES`` machines are always computed. None: all machines are computed
+    executor : what computes the machines: a cluster of ``open_cluster``, or any executor of
+        ``concurrent.futures``. The result is the same. None: this process
     progress : True (a bar), False (none), None (a bar where the call takes over two seconds), or a function
         that is called with the finished fraction
 
@@ -157,6 +163,10 @@ def compare(
         action = "State ranges in [uncertainty], or sources that say what is assumed."
         raise refuse("uncertainty", "none", "at least one uncertain input", action)
     unlike_teeth = any(one.healthy is not one for one in pairs)
+    checked_executor(executor)
+    if seconds is not None and executor is not None:
+        action = "Leave it out, and state the number of machines."
+        raise refuse("seconds", seconds, "none with an executor, on which all machines are computed", action)
     deadline = Deadline(
         None if seconds is None else real_number("seconds", seconds, 0.0, above=True, unit="s")
     )
@@ -164,16 +174,21 @@ def compare(
     total = len(pairs) * (1 + samples) + sum(map(len, alone))
     done = 0
 
-    def row(k: int, shares: Mapping[int, float]) -> FloatArray | None:
-        """Numbers of variant k. ``shares``: number of a draw -> share of the distribution."""
+    def count(number: int) -> None:
         nonlocal done
-        done += 1
+        done += number
         if progress is not None:
             progress(done / total)
-        changes = [(draws[n].inputs[k], share) for n, share in shares.items() if k in draws[n].inputs]
-        return _numbers(pairs[k], changes, unlike_teeth=unlike_teeth)
 
-    nominal = [row(k, {}) for k in range(len(pairs))]
+    def variant(k: int, shares: Mapping[int, float]) -> _Variant:
+        """Variant k of a machine. ``shares``: number of a draw -> share of the distribution."""
+        changes = [(draws[n].inputs[k], share) for n, share in shares.items() if k in draws[n].inputs]
+        return _Variant(pairs[k], tuple(changes))
+
+    nominal = list[FloatArray | None]()
+    for k in range(len(pairs)):
+        nominal += _numbers_of([variant(k, {})], unlike_teeth)
+        count(1)
     for k, one in enumerate(nominal):
         if one is None:
             name = f"{ascii_uppercase[k]} ({texts[k]})"
@@ -181,18 +196,27 @@ def compare(
     as_given = np.stack([one for one in nominal if one is not None])
     swings = np.full((len(draws), 2, as_given.shape[1]), np.nan)
     first = deadline.share(ALONE)
-    for n, draw in enumerate(draws):
-        if first.passed:
-            break
-        ends = [row(min(draw.inputs), {n: share}) for share in alone[n]]
+    calls = (
+        ([variant(min(draw.inputs), {n: share}) for share in alone[n]], unlike_teeth)
+        for n, draw in enumerate(draws)
+    )
+    for n, ends in enumerate(results_of(_numbers_of, calls, executor, lambda: first.passed)):
+        count(len(ends))
         if valid_ends := [one for one in ends if one is not None]:
             swings[n] = np.min(valid_ends, axis=0), np.max(valid_ends, axis=0)
     points = sobol_points(importance_of(swings), samples, seed)
     machines: list[list[FloatArray | None]] = []
-    for point in points:
-        if len(machines) >= LEAST_SAMPLES and deadline.passed:
-            break
-        machines.append([row(k, dict(enumerate(point.tolist()))) for k in range(len(pairs))])
+    calls = (
+        ([variant(k, dict(enumerate(point.tolist()))) for k in range(len(pairs))], unlike_teeth)
+        for point in points
+    )
+
+    def ends_here() -> bool:
+        return len(machines) >= LEAST_SAMPLES and deadline.passed
+
+    for machine in results_of(_numbers_of, calls, executor, ends_here):
+        count(len(machine))
+        machines.append(machine)
     complete = np.array([all(one is not None for one in machine) for machine in machines])
     if complete.sum() < _LEAST * len(machines):
         text = f"Only {complete.sum()} of {len(machines)} samples have a prediction in every variant"
@@ -317,12 +341,24 @@ def _listed(names: Sequence[str]) -> str:
     return names[0] if len(names) == 1 else f"{names[0]} and {len(names) - 1} more"
 
 
+class _Variant(NamedTuple):
+    """A variant in one machine: the pair, and the inputs with the shares of their distributions."""
+
+    pair: GearPair
+    changes: tuple[tuple[Input, float], ...]
+
+
+def _numbers_of(variants: Sequence[_Variant], unlike_teeth: bool) -> list[FloatArray | None]:
+    """``_numbers`` of each variant."""
+    return [_numbers(one.pair, one.changes, unlike_teeth=unlike_teeth) for one in variants]
+
+
 def _numbers(
     pair: GearPair, changes: Sequence[tuple[Input, float]], *, unlike_teeth: bool
 ) -> FloatArray | None:
     """``RESULTS``, for unlike teeth ``OF_TEETH``, and ``FLAGS``. None: there is no motion."""
     try:
-        with warnings.catch_warnings():
+        with ONE_AT_A_TIME, warnings.catch_warnings():
             warnings.simplefilter("ignore", LawRangeWarning)
             sampled = varied(pair, changes)
             prediction = predicted(sampled.healthy)

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 import xarray as xr
 
-from lumped.display.progress import shows_progress
+from lumped.display.progress import reported_to, shows_progress
 from lumped.display.result import DisplayedResult
 from lumped.errors import NumericalError, typed_errors
 from lumped.model.periodic_system import Supports, with_supports
@@ -29,7 +29,7 @@ from lumped.model.steady import UNSTABLE
 from lumped.model.steady_state import periodic_motion
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
-from lumped.typing import FloatArray, ProgressRequest
+from lumped.typing import FloatArray, Progress, ProgressRequest, unheard
 from validation.signals.complex_orders import orders_of_period
 
 if TYPE_CHECKING:
@@ -101,6 +101,16 @@ class Prediction(DisplayedResult):
         "summary": "numbers, or print the prediction",
         "power_loss": "loss",
         "force": "mesh_force",
+        "max_force": "mesh_force.max()",
+        "bearing_force": "cycle['bearing_force_x_p'], or bearing_rms",
+        "gear_bearing_rms": "cycle['bearing_force_x_g'].std()",
+        "frequency": "pair.geometry.mesh_frequency",
+        "mesh_frequency": "pair.geometry.mesh_frequency",
+        "speed_rpm": "pair.operating.pinion_speed",
+        "orders": "bearing_orders, orders_of('dte') or spectrum()",
+        "to_dict": "numbers",
+        "to_json": "json.dumps(prediction.numbers)",
+        "to_dataframe": "cycle.to_dataframe(), or to_dataset()",
         "speed": "pair.operating.pinion_speed",
         "torque": "pair.operating.pinion_torque",
         "power_balance": "crosscheck(pair).power_balance()",
@@ -281,7 +291,7 @@ def predict(
     supports : "springs", the four of ``bearings``, or "shafts", the elastic ones of ``shafts``; by default
         the shafts of a pair that has them
     progress : True (a bar), False (none), None (a bar where the call takes over two seconds), or a function
-        that is called with the finished fraction, here at the end
+        that is called with the finished fraction
 
     Returns
     -------
@@ -292,9 +302,12 @@ def predict(
     ParameterError : a refused parameter
     NumericalError : no motion was found, or it does not stay bounded
     """
-    result = predicted(with_supports(load_gear_pair(pair), supports))
-    if callable(progress):
-        progress(1.0)
+    tell = reported_to(progress) or unheard
+    result = predicted(
+        with_supports(load_gear_pair(pair), supports),
+        progress=lambda share, stage="", /: tell(0.95 * share),
+    )
+    tell(1.0)
     return result
 
 
@@ -306,15 +319,18 @@ def dynamic_factor(pair: AnyPair, *, supports: Supports | None = None) -> float:
     return predict(pair, supports=supports).dynamic_factor
 
 
-def predicted(pair: GearPair, samples_of_like_teeth: int = _SAMPLES) -> Prediction:
+def predicted(
+    pair: GearPair, samples_of_like_teeth: int = _SAMPLES, progress: Progress = unheard
+) -> Prediction:
     """Return the prediction for a pair at its operating point, on the shafts of a pair that has shafts.
 
-    ``samples_of_like_teeth``: samples in a mesh cycle where all teeth are alike.
+    ``samples_of_like_teeth``: samples in a mesh cycle where all teeth are alike. ``progress`` is called with
+    the finished fraction and what is being done.
     """
     samples = samples_of_like_teeth if pair.healthy is pair else None
     try:
         with typed_errors():
-            motion = periodic_motion(pair, "unilateral", samples_per_cycle=samples)
+            motion = periodic_motion(pair, "unilateral", samples_per_cycle=samples, progress=progress)
     except NumericalError as error:
         return _stand_in(pair, samples, error)
     settled = pair.healthy is pair and motion.attributes.get("origin") == Origin.SETTLED.value

@@ -75,7 +75,7 @@ _ALL_CYCLES = 30_000
 FLAGS = ("contact_lost", "unstable", "linear")
 _ORDER_NAMES = tuple(f"bearing_order_{m}" for m in range(1, ORDERS + 1))
 #: Warning filters belong to the process, so the threads of one process take turns.
-_ONE_AT_A_TIME = threading.Lock()
+ONE_AT_A_TIME = threading.Lock()
 T = TypeVar("T")
 
 
@@ -459,7 +459,7 @@ def _numbers_alone(pair: GearPair, one: Input) -> list[FloatArray | None]:
 def _numbers(pair: GearPair, changes: Sequence[tuple[Input, float]]) -> FloatArray | None:
     """Quantities, orders of the bearing force, quantities of unlike teeth and ``FLAGS``. None: no motion."""
     try:
-        with _ONE_AT_A_TIME, warnings.catch_warnings():
+        with ONE_AT_A_TIME, warnings.catch_warnings():
             warnings.simplefilter("ignore", LawRangeWarning)
             sampled = varied(pair, changes)
             prediction = predicted(sampled.healthy)

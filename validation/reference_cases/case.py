@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, ClassVar, overload
 
 from lumped import GearPair
 from lumped.arguments import nearest
-from lumped.display.result import DisplayedResult
+from lumped.display.result import DisplayedResult, no_variables
 from lumped.errors import refuse
 from lumped.fields.text_file import parse_toml
 from lumped.schema.files import load_gear_pair
@@ -83,8 +83,9 @@ class ReferenceCase(DisplayedResult):
     mesh_period: float
     start: Mapping[str, float]
 
-    def plot(self) -> Figure:
+    def plot(self, *variables: object) -> Figure:
         """Draw every channel over the period."""
+        no_variables(variables)
         from validation.reference_cases.figure import case_figure
 
         return case_figure(self.curves, self.mesh_period, self.mesh_cycles)

@@ -3,6 +3,6 @@
 Names are imported at their first use: a command without a report does not load chapters and figures.
 """
 
-import lazy_loader
+from lumped.public_names import public_names
 
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+__getattr__, __dir__, __all__ = public_names(__name__, __file__)

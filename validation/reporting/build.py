@@ -6,6 +6,7 @@ import json
 import time
 import warnings
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from datetime import UTC, datetime
 from functools import partial
@@ -18,7 +19,7 @@ from lumped import GearPair, LawRangeWarning, load_gear_pair
 from lumped.arguments import file_path, real_number
 from lumped.display.progress import reported_to, shows_progress
 from lumped.display.result import DisplayedResult
-from lumped.errors import refuse
+from lumped.errors import NumericalError, refuse
 from lumped.labelling import source_hash
 from lumped.model.periodic_system import Supports, with_supports
 from lumped.outcomes import Absent, Outcome
@@ -30,14 +31,15 @@ from validation.check.record.compare import check_record
 from validation.check.record.comparison import RecordComparison
 from validation.files.folder import FORMAT, FORMAT_VERSION, whole_folder
 from validation.files.output import write_dataset
-from validation.reporting.blocks import Picture, Table, chapter_data, plain
+from validation.reporting.blocks import Content, Picture, Table, Text, chapter_data, plain
 from validation.reporting.chapter import Chapter, Written
 from validation.reporting.effort import FULL, QUICK
 from validation.reporting.facts import Fact
 from validation.reporting.first_numbers import Number, first_numbers
 from validation.reporting.gate import TOLERANCE, Comparison, load_report
 from validation.reporting.gate import compare as compare_reports
-from validation.reporting.page_one import PageOne, page_one, title
+from validation.reporting.page_one import PageOne, title
+from validation.reporting.page_without_motion import first_page, static_numbers
 from validation.reporting.pictures import draw_pictures
 from validation.reporting.relations import failed_checks
 from validation.reporting.results import Results
@@ -111,7 +113,7 @@ def report(
     Raises
     ------
     ParameterError : a refused parameter or output folder, before any work
-    NumericalError : a model fails; the text says what to try
+    NumericalError : a model fails in a way that no page can say; the text says what to try
     """
     progress = reported_to(progress)
     started = time.perf_counter()
@@ -130,15 +132,22 @@ def report(
         results = Results(gear_pair, QUICK if quick else FULL, named, record=measured)
         if early is not None:
             tell(0.0, "motion")
-            early(title(results), first_numbers(results.prediction))
+            known = results.without_motion is None
+            early(
+                title(results),
+                first_numbers(results.prediction) if known else static_numbers(results.static),
+            )
         # Chapters and figures import matplotlib, for which the first numbers need not wait.
         from validation.reporting.chapters import CHAPTERS
         from validation.reporting.first_figures import first_figures
         from validation.reporting.page import render
 
         chapters = written(results, CHAPTERS, lambda f, stage="", /: tell(0.85 * f, stage))
-        first = page_one(results)
-        pictures = first_figures(results)
+        first = first_page(results)
+        pictures: tuple[Picture, ...] = ()
+        if results.without_motion is None:
+            with suppress(NumericalError):  # page 1 says why
+                pictures = first_figures(results)
         blocks = [block for _, content in chapters for block in content.blocks]
         every = (*pictures, *(block for block in blocks if isinstance(block, Picture)))
         images = draw_pictures(every, folder / "figures", lambda share: tell(0.85 + 0.12 * share, "figures"))
@@ -159,7 +168,7 @@ def report(
     tell(1.0, "done")
     changes = None if earlier is None else compare_reports(earlier, data, tolerance)
     seconds = time.perf_counter() - started
-    compared = results.measured_error
+    compared = results.measured_error if results.without_motion is None else None
     return Report(target, first, failed_checks(results), findings(results), seconds, changes, compared)
 
 
@@ -178,12 +187,18 @@ def findings(results: Results) -> frozenset[str]:
     """Return the findings about the machine: "contact", "stable", "holds", "record".
 
     "contact": contact is lost. "stable": the motion is not stable. "holds": the model does not hold.
-    "record": a measured record does not confirm the prediction.
+    "record": a measured record does not confirm the prediction. A pair without a motion has them all.
     """
+    if results.without_motion is not None:
+        return frozenset({"contact", "stable", "holds", *(() if results.record is None else ("record",))})
     lost = results.contact_lost
     unstable = not results.prediction.stable
     record = results.measured_error
-    conditions = {"contact": lost, "stable": unstable, "holds": bool(results.outside) or lost or unstable}
+    try:
+        outside = bool(results.outside)
+    except NumericalError:  # the assumptions could not be checked
+        outside = True
+    conditions = {"contact": lost, "stable": unstable, "holds": outside or lost or unstable}
     conditions["record"] = record is not None and record.verdict is not Record.CONFIRMS
     return frozenset(name for name, holds in conditions.items() if holds)
 
@@ -202,11 +217,24 @@ def written(results: Results, chapters: Sequence[Chapter], progress: Progress) -
     # Samples first, charts last: another process compiles the second program meanwhile, and then the charts.
     for chapter in sorted(chapters, key=lambda one: (one.key == "stability") - (one.key == "how_sure")):
         results.progress = partial(tell, done, chapter.seconds)
-        content = chapter.write(results)
+        content = _content(chapter, results)
         if content is not None:
             made.append((chapter, content))
         done += chapter.seconds
     return tuple(sorted(made, key=lambda one: chapters.index(one[0])))
+
+
+def _content(chapter: Chapter, results: Results) -> Content | None:
+    """Contents of a chapter, or the reason why it cannot be computed. None: the report leaves it out.
+
+    A chapter on a motion that does not exist is left out: page 1 gives the reason.
+    """
+    if chapter.needs_motion and results.without_motion is not None:
+        return None
+    try:
+        return chapter.write(results)
+    except NumericalError as error:
+        return Content("This chapter could not be computed.", (Text(str(error)),))
 
 
 def document(
@@ -219,7 +247,7 @@ def document(
         "gear_pair": results.pair.name,
         "description": results.pair.description,
         "quick": quick,
-        "teeth": "alike" if results.teeth is None else "as given",
+        "teeth": "alike" if results.given is results.pair else "as given",
         "verdict": {"kind": first.verdict.name, "headline": first.headline, "reason": first.reason},
         "numbers": {number.key: _number(number) for number in first.numbers},
         "actions": [{"text": a.text, "command": a.command, "gain": a.gain} for a in first.actions],
@@ -252,20 +280,33 @@ def _number(number: Number) -> dict[str, Any]:
 def _write_data(results: Results, folder: Path) -> None:
     """Write the datasets of the numbers, and the parameter file."""
     folder.mkdir()
-    second = results.second
-    datasets: dict[str, xr.Dataset | Absent] = {
-        "prediction": results.prediction.cycle,
-        "linear": results.linear,
-        "second_program": second if isinstance(second, Absent) else second.cycle,
-        "sweep": results.sweep,
-        "uncertainty": results.uncertainty,
-        "budget": results.budget,
-        "teeth": Absent(Outcome.ALIKE) if results.teeth is None else results.teeth.motion,
-        "stability": results.chart,
+    datasets: dict[str, Callable[[], xr.Dataset | Absent]] = {
+        "prediction": lambda: results.prediction.cycle,
+        "linear": lambda: results.linear,
+        "second_program": lambda: _second_motion(results),
+        "sweep": lambda: results.sweep,
+        "uncertainty": lambda: results.uncertainty,
+        "budget": lambda: results.budget,
+        "teeth": lambda: Absent(Outcome.ALIKE) if results.teeth is None else results.teeth.motion,
+        "stability": lambda: results.chart,
     }
-    for number, branches in enumerate(results.jump_search.branches, 1):
-        datasets[f"motions_{number}" if number > 1 else "motions"] = branches.dataset
-    for name, data in datasets.items():
-        if not isinstance(data, Absent):
-            write_dataset(data, folder / f"{name}.nc")
+    if results.without_motion is not None:
+        sharing = results.static.sharing
+        datasets = {"static": lambda: Absent(Outcome.FAILED) if sharing is None else sharing}
+    else:
+        with suppress(NumericalError):
+            for number, branches in enumerate(results.jump_search.branches, 1):
+                name = f"motions_{number}" if number > 1 else "motions"
+                datasets[name] = partial(getattr, branches, "dataset")
+    for name, dataset in datasets.items():
+        with suppress(NumericalError):  # the chapter says why
+            data = dataset()
+            if not isinstance(data, Absent):
+                write_dataset(data, folder / f"{name}.nc")
     (folder / "parameters.toml").write_text(results.given.to_toml(), encoding="utf-8")
+
+
+def _second_motion(results: Results) -> xr.Dataset | Absent:
+    """The motion of the second program."""
+    second = results.second
+    return second if isinstance(second, Absent) else second.cycle

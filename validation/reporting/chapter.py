@@ -19,12 +19,14 @@ class Chapter:
     title : heading
     write : function from the results to the written chapter; None: the report leaves the chapter out
     seconds : approximate time of the chapter, for the progress bar [s]
+    needs_motion : whether a pair without a motion has no such chapter
     """
 
     key: str
     title: str
     write: Callable[[Results], Content | None]
     seconds: float = 0.1
+    needs_motion: bool = True
 
 
 #: A chapter with its contents for a gear pair.

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from contextlib import suppress
 
 import numpy as np
 import xarray as xr
 
+from lumped.errors import NumericalError
 from lumped.outcomes import Absent
 from validation.prediction.motion import NOTHING, Prediction
 from validation.reporting.results import Results
@@ -28,7 +30,11 @@ def failed_checks(results: Results) -> tuple[str, ...]:
 
 def broken_relations(results: Results) -> tuple[str, ...]:
     """Return the relations between results that do not hold, as phrases."""
-    return (*_of_numbers(results), *_of_the_motion(results), *_of_the_sweep(results), *_of_samples(results))
+    broken: list[str] = []
+    for relations in (_of_numbers, _of_the_motion, _of_the_sweep, _of_samples):
+        with suppress(NumericalError):  # no result, no relation: page 1 says that the result is missing
+            broken += relations(results)
+    return tuple(broken)
 
 
 def _of_numbers(results: Results) -> Iterator[str]:
@@ -51,11 +57,11 @@ def _of_the_motion(results: Results) -> Iterator[str]:
         yield f"driving torque, mesh force and friction do not balance by {imbalance:.2g} of the torque"
     dte = prediction.cycle["dte"].to_numpy()
     sampled = float(np.ptp(dte))
-    if (
-        not sampled * (1.0 - ROUNDING) - _rounding(results)
-        <= prediction.peak_to_peak
-        <= 1.05 * sampled + 1e-12
-    ):
+    least = sampled * (1.0 - ROUNDING) - _rounding(results)
+    # Samples that do not resolve the fastest vibration may miss it as a whole.
+    resolved = results.vibrations <= 0.5 * prediction.plain.time.size / prediction.mesh_cycles
+    largest = (1.05 if resolved else 2.0) * sampled + 1e-12
+    if not least <= prediction.peak_to_peak <= largest:
         yield "the peak to peak is not that of the motion"
     rms = prediction.numbers["bearing_rms"]
     orders = prediction.bearing_orders

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from contextlib import suppress
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple, Self, TypeVar, overload
 
 import numpy as np
 import xarray as xr
@@ -46,6 +46,7 @@ from validation.prediction.motion import (
     predicted,
 )
 from validation.prediction.resonance import Resonance, nearest_resonance
+from validation.prediction.static import StaticPair
 from validation.prediction.uncertainty import (
     LEAST_BAND,
     LONG_STEP,
@@ -83,6 +84,31 @@ _ABOUT = 0.1
 _MANY = 300.0
 #: Output times in a mesh cycle of the second program on shafts.
 _SAMPLES = 512
+
+
+T = TypeVar("T")
+
+
+class computed_once(cached_property[T]):
+    """A property that is computed at the first use. A NumericalError is kept as well, and raised again."""
+
+    @overload
+    def __get__(self, instance: None, owner: type[Any] | None = None) -> Self: ...
+    @overload
+    def __get__(self, instance: object, owner: type[Any] | None = None) -> T: ...
+    def __get__(self, instance: Any, owner: type[Any] | None = None) -> Any:
+        """Return the value, or raise the error of the first use."""
+        if instance is None:
+            return self
+        failures: dict[str, NumericalError] = instance.__dict__.setdefault("_failures", {})
+        name = str(self.attrname)
+        if name in failures:
+            raise failures[name]
+        try:
+            return super().__get__(instance, owner)
+        except NumericalError as error:
+            failures[name] = error
+            raise
 
 
 class RecordExplanations(NamedTuple):
@@ -138,12 +164,12 @@ class Results:
         """Pinion speed [rpm]."""
         return operating_rpm(self.pair)
 
-    @cached_property
+    @computed_once
     def speeds(self) -> tuple[float, float]:
         """Range of pinion speeds of all results over speed [rpm]."""
         return speed_range(self.pair)
 
-    @cached_property
+    @computed_once
     def prediction(self) -> Prediction:
         """The motion at the operating point of the pair as given."""
         if self.given is self.pair:
@@ -151,20 +177,34 @@ class Results:
         self.stage("teeth that differ")
         return predicted(self.given)
 
-    @cached_property
+    @computed_once
     def like(self) -> Prediction:
         """The motion at the operating point with like teeth."""
         self.stage("motion")
         return predicted(self.pair)
 
-    @cached_property
+    @property
+    def without_motion(self) -> NumericalError | None:
+        """Why the pair has no motion of either form. None: the pair has a motion."""
+        try:
+            self.prediction  # noqa: B018  (computed at the first use)
+        except NumericalError as error:
+            return error
+        return None
+
+    @computed_once
+    def static(self) -> StaticPair:
+        """The pair at rest under its torque, with like teeth."""
+        return StaticPair(self.pair)
+
+    @computed_once
     def teeth(self) -> TeethFindings | None:
         """Motion and signals of unlike teeth. None: all teeth are alike."""
         if self.given is self.pair:
             return None
         return TeethFindings(self.given, motion=self.prediction.cycle)
 
-    @cached_property
+    @computed_once
     def linear(self) -> xr.Dataset | Absent:
         """The linear motion on springs, whose stability and response over speed are charted."""
         try:
@@ -172,7 +212,7 @@ class Results:
         except NumericalError as error:
             return Absent(Outcome.FAILED, str(error))
 
-    @cached_property
+    @computed_once
     def check(self) -> CrossCheck | Absent:
         """Cross-check of both programs on springs. Absent: the second program refuses the speed, or fails."""
         try:
@@ -180,7 +220,7 @@ class Results:
         except (NumericalError, ParameterError) as error:
             return Absent(Outcome.FAILED, str(error))
 
-    @cached_property
+    @computed_once
     def second(self) -> Prediction | Absent:
         """The motion of the second program at the operating point, on shafts where the pair has shafts."""
         if self.pair.shafts is not None:
@@ -199,7 +239,7 @@ class Results:
         last = run.sel(time=slice(float(run["time"][-1]) - 1.000001 * period, None)).isel(time=slice(1, None))
         return measured(self.pair, last, Motion.SECOND)
 
-    @cached_property
+    @computed_once
     def uncertainty(self) -> xr.Dataset | Absent:
         """Samples of the prediction with varied inputs. Absent: the inputs are not varied."""
         if not self.effort.samples:
@@ -214,30 +254,30 @@ class Results:
         """Number of samples of the uncertain inputs."""
         return self.effort.samples // (2 if self.vibrations > _MANY else 1)
 
-    @cached_property
+    @computed_once
     def vibrations(self) -> float:
         """Upper bound of the vibrations of the fastest mode in a mesh cycle, on springs."""
         system = LTVSystem.of(self.pair, "full", supports="springs")
         return fastest_frequency(system) * system.period / (2.0 * math.pi)
 
-    @cached_property
+    @computed_once
     def inputs(self) -> tuple[int, int]:
         """Number of known inputs and number of assumed inputs, see ``given_and_assumed``."""
-        return given_and_assumed(self.given, contact_lost=self.prediction.contact_lost)
+        return given_and_assumed(self.given, contact_lost=self.backlash_counts)
 
-    @cached_property
+    @computed_once
     def varies(self) -> bool:
         """Whether any input is uncertain."""
         return bool(uncertain_inputs(self.given))
 
-    @cached_property
+    @computed_once
     def sweep(self) -> xr.Dataset:
         """Linear motion on springs over speed."""
         stage = self.stage("response over speed")
         most = self.effort.sweep_speeds
         return resolved_sweep(self.pair_on_springs, self.speeds, most=most, progress=stage)
 
-    @cached_property
+    @computed_once
     def band(self) -> xr.Dataset | Absent:
         """Range of the transmission error on springs over speed with the uncertain inputs."""
         if isinstance(self.uncertainty, Absent):
@@ -253,7 +293,7 @@ class Results:
         seconds = self.effort.band_seconds
         return speed_band(self.pair_on_springs, speeds, self.uncertainty, samples, step, seconds)
 
-    @cached_property
+    @computed_once
     def teeth_band(self) -> xr.Dataset | None:
         """Range of the results of unlike teeth. None: the teeth are alike, or the inputs are not varied."""
         if self.teeth is None or isinstance(self.uncertainty, Absent):
@@ -261,7 +301,7 @@ class Results:
         self.stage("range of teeth that differ")
         return teeth_band(self.given, self.uncertainty, self.effort.band_seconds)
 
-    @cached_property
+    @computed_once
     def record_samples(self) -> Varied | None:
         """Motions at samples of the inputs. None: there is no record, or the inputs are not varied."""
         samples = self.uncertainty
@@ -272,11 +312,16 @@ class Results:
         return sampled_predictions(self.pair, samples, effort.band_samples, effort.band_seconds)
 
     @property
+    def backlash_counts(self) -> bool:
+        """Whether the results depend on the backlash: contact is lost. A pair without a motion keeps it."""
+        return self.without_motion is None and self.prediction.contact_lost
+
+    @property
     def contact_lost(self) -> bool:
         """Whether contact is lost at the operating point."""
         return self.prediction.contact_lost
 
-    @cached_property
+    @computed_once
     def other_motions(self) -> tuple[GearOrbit, ...]:
         """Stable motions at the operating speed other than the prediction, the smallest first."""
         if self.pair.shafts is not None:
@@ -293,7 +338,7 @@ class Results:
         """Number of pairs of unlike teeth that lose contact."""
         return 0 if self.teeth is None else len(self.teeth.contact_lost)
 
-    @cached_property
+    @computed_once
     def contact_loss_windows(self) -> tuple[tuple[float, float], ...]:
         """Ranges of speed [rpm] in which like teeth on springs can lose contact, within ``speeds``."""
         windows = contact_loss_windows(self.sweep, self.speeds)
@@ -304,7 +349,7 @@ class Results:
         about = max((1.0 - _ABOUT) * speed, lowest), min((1.0 + _ABOUT) * speed, highest)
         return tuple(sorted((*windows, about)))
 
-    @cached_property
+    @computed_once
     def jump_search(self) -> JumpSearch:
         """Motions beyond contact loss on springs over ``speeds``, within the effort's processor time."""
         windows = self.contact_loss_windows
@@ -334,13 +379,13 @@ class Results:
                 high = min(high, start)
         return low, high
 
-    @cached_property
+    @computed_once
     def resonance(self) -> Resonance | None:
         """The resonance nearest to the operating speed, on the supports of the prediction."""
         self.stage("resonances")
         return nearest_resonance(self.pair, self.speeds)
 
-    @cached_property
+    @computed_once
     def modes(self) -> tuple[Mode, ...]:
         """Modes of the averaged pair on springs. Empty: a mode is overdamped and has no frequency."""
         try:
@@ -348,7 +393,7 @@ class Results:
         except NumericalError:
             return ()
 
-    @cached_property
+    @computed_once
     def multipliers(self) -> floquet.GearPairMultipliers:
         """Floquet multipliers of the linear motion on springs at the operating point."""
         return floquet.gear_pair_multipliers(self.pair, supports="springs")
@@ -359,14 +404,14 @@ class Results:
         nearest = int(np.abs(self.chart["damping_ratio"].to_numpy() - self.pair.mesh.damping_ratio).argmin())
         return np.asarray(self.chart["verdict"].isel(damping_ratio=nearest).to_numpy(), dtype=np.int64)
 
-    @cached_property
+    @computed_once
     def chart(self) -> xr.Dataset:
         """Stability on springs over speed and mesh damping."""
         axes = chart_axes(self.pair, self.effort.chart_speeds, self.effort.chart_dampings)
         progress = self.stage("stability chart")
         return floquet.stability_chart(self.pair, axes, supports="springs", progress=progress)
 
-    @cached_property
+    @computed_once
     def proven_stability(self) -> floquet.StabilityOverSpeed:
         """What is proven on unstable speeds next to the operating speed, of the linear motion on springs."""
         self.stage("nearest unstable speed")
@@ -391,7 +436,7 @@ class Results:
         nodes = self.chart["speed_rpm"].to_numpy()[self.stability_line < 0]
         return float(nodes[np.abs(nodes - self.operating_rpm).argmin()]) if nodes.size else math.nan
 
-    @cached_property
+    @computed_once
     def orders_over_speed(self) -> xr.Dataset:
         """Amplitudes of the pinion bearing force by mesh order and speed, linear motion on springs."""
         self.stage("orders over speed")
@@ -411,7 +456,7 @@ class Results:
             },
         )
 
-    @cached_property
+    @computed_once
     def flags(self) -> tuple[Flag, ...]:
         """Assumptions of the lumped model, checked on the linear motion."""
         return (
@@ -420,18 +465,18 @@ class Results:
             else validity_flags(self.pair, self.linear, self.multipliers)
         )
 
-    @cached_property
+    @computed_once
     def warnings(self) -> tuple[str, ...]:
         """Sentences on implausible values of the parameter file."""
         return tuple(parameter_warnings(self.pair))
 
-    @cached_property
+    @computed_once
     def same_equations(self) -> float | None:
         """Largest difference between both programs with the same equations, over the peak to peak."""
         agreements = () if isinstance(self.check, Absent) else self.check.of("linear")
         return max((a.difference for a in agreements if a.quantity in ("dte", "x_p", "x_g")), default=None)
 
-    @cached_property
+    @computed_once
     def measured_error(self) -> RecordComparison | None:
         """Comparison of the prediction with a measured record. None: there is no record."""
         if self.record is None:
@@ -443,7 +488,7 @@ class Results:
             varied = None
         return compare_record(self.record, self.prediction, numerical=numerical, varied=varied)
 
-    @cached_property
+    @computed_once
     def record_explanations(self) -> RecordExplanations | None:
         """What a record that contradicts the prediction is compatible with. None: no record contradicts."""
         if self.record is None or self.measured_error is None:
@@ -464,7 +509,7 @@ class Results:
         linear = self.linear
         return (self.prediction.cycle, *(() if isinstance(linear, Absent) else (linear,)))
 
-    @cached_property
+    @computed_once
     def outside(self) -> tuple[Flag, ...]:
         """Violated assumptions, but for contact and stability: effects that the model does not have."""
         skip = ("contact_loss", "stability")
@@ -505,13 +550,13 @@ class Results:
         slack = _ROUNDING * abs(result)
         return float(0.5 * (np.mean(values < result - slack) + np.mean(values <= result + slack)))
 
-    @cached_property
+    @computed_once
     def budget(self) -> xr.Dataset:
         """All errors of the prediction."""
         self.stage("error budget")
         return error_budget(self)
 
-    @cached_property
+    @computed_once
     def roaming(self) -> tuple[Hazard, ...]:
         """Speeds of beats and chaos in the search for jumps."""
         return beats_and_chaos(self.jump_search, self.operating_rpm)

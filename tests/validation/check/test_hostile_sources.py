@@ -19,9 +19,11 @@ from hypothesis import strategies as st
 
 from lumped.errors import ParameterError
 from tests.validation.check.known_curves import PAIR, Known, rows
+from validation.any_system import read_matrices
 from validation.check.curves import Curves
 from validation.check.reading.reader import SUFFIXES, TEXT_SUFFIXES, read
-from validation.files import matlab
+from validation.exchange import read_netcdf
+from validation.files import hdf5, matlab
 
 KNOWN = Known()
 #: Seconds for which nobody waits in vain; a busy machine is five times slower.
@@ -216,6 +218,39 @@ def test_a_matlab_file_that_ends_its_reader_is_refused(tmp_path, monkeypatch):
     scipy.io.savemat(tmp_path / "x.mat", {"t": KNOWN.time, "dte": KNOWN.dte})
     with pytest.raises(ParameterError, match="damaged"):
         read(tmp_path / "x.mat", PAIR)
+
+
+READERS = {
+    "curves": lambda path: read(path, PAIR),
+    "results": read_netcdf,
+    "matrices": read_matrices,
+}
+
+
+def _endless(path):
+    """Write a file of which the HDF5 library reads an attribute for ever: one size in its heap is wrong."""
+    data = xr.Dataset({"dte": ("time", KNOWN.dte)}, coords={"time": KNOWN.time})
+    data.to_netcdf(path, engine="h5netcdf")
+    content = bytearray(path.read_bytes())
+    size_of_the_first_object = content.index(b"GCOL") + 24
+    content[size_of_the_first_object] = 70
+    path.write_bytes(content)
+
+
+@pytest.mark.parametrize("reader", READERS)
+def test_an_hdf5_file_that_would_be_read_for_ever_is_refused(tmp_path, monkeypatch, reader):
+    monkeypatch.setattr(hdf5, "_PATIENCE", 5.0)
+    _endless(tmp_path / "x.nc")
+    with pytest.raises(ParameterError, match="still reads it after 5 s"):
+        READERS[reader](tmp_path / "x.nc")
+
+
+@pytest.mark.parametrize("reader", READERS)
+def test_an_hdf5_file_that_ends_its_reader_is_refused(tmp_path, monkeypatch, reader):
+    monkeypatch.setattr(hdf5, "_READER", "import os, signal\nos.kill(os.getpid(), signal.SIGSEGV)")
+    xr.Dataset({"dte": ("time", KNOWN.dte)}).to_netcdf(tmp_path / "x.nc", engine="h5netcdf")
+    with pytest.raises(ParameterError, match="ends the process that reads"):
+        READERS[reader](tmp_path / "x.nc")
 
 
 def test_bytes_of_a_matlab_file_may_be_wrong(tmp_path):

@@ -1,5 +1,6 @@
 """Is the prediction the best motion there is, and are its numbers those of that motion?"""
 
+import itertools
 import tomllib
 
 import numpy as np
@@ -12,7 +13,7 @@ from lumped.model.equations import COORDINATES
 from tests.unlike_pairs import UNLIKE, unlike_pair
 from validation.cross_check.motions import settled_orbit
 from validation.exchange.new_pair_file import new_pair, new_pair_text
-from validation.prediction.motion import Motion, predicted
+from validation.prediction.motion import Motion, predict, predicted
 
 
 def loaded(name: str) -> lumped.GearPair:
@@ -207,3 +208,40 @@ def test_the_largest_force_of_a_slow_pair_is_below_the_torque_over_the_base_radi
     prediction = predicted(slow_and_rough())
     assert prediction.mesh_force.max() < 0.997 * prediction.static_force
     assert prediction.dynamic_factor > 1.0
+
+
+#: Drawn pair 967 of docs/verification/answers.md: 6,000 vibrations of the fastest mode in a mesh cycle.
+SLOW = new_pair(
+    (17, 15), 1.24, 7.1, 27.2, 26.2,
+    {"mesh.stiffness.model": "parabolic", "pinion.profile_shift": 0.64, "gear.profile_shift": 0.47},
+)  # fmt: skip
+
+
+def test_a_slow_pair_has_the_motion_of_slow_rolling():
+    """A start fades within a mesh cycle, so the run repeats, to the rounding of its 50,000 steps.
+
+    So slow a pair moves as in the static and in the linear form but for the jerk of a tooth that enters:
+    the total force within a hundredth, the transmission error within a third of its peak to peak. Between
+    its 512 outputs lie a dozen vibrations, of which the outputs know nothing.
+    """
+    prediction = predicted(SLOW)
+    assert prediction.motion is Motion.SETTLED
+    assert prediction.stable
+    linear = lumped.steady_state(SLOW)
+    static = lumped.static_transmission_error(SLOW)
+    force = linear["normal_load"].sum("pair")
+    assert prediction.dynamic_factor == pytest.approx(float(force.max() / force.mean()), rel=0.01)
+    assert prediction.peak_to_peak == pytest.approx(linear.attrs["dte_peak_to_peak"], rel=0.1)
+    assert 1.0 < prediction.peak_to_peak / float(static["peak_to_peak"][0]) < 4.0 / 3.0
+    sampled = float(np.ptp(prediction.plain.values["dte"]))
+    assert sampled <= prediction.peak_to_peak < 1.1 * sampled
+
+
+@pytest.mark.parametrize("name", ["larger_gear_drives_contact_lost", "unlike_teeth_finite_elements"])
+def test_progress_is_told_while_the_motion_is_computed(name):
+    told = []
+    predict(unlike_pair(name), progress=told.append)
+    assert told[0] == 0.0
+    assert told[-1] == 1.0
+    assert len(told) >= 4
+    assert all(before < after for before, after in itertools.pairwise(told))

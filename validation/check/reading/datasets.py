@@ -14,6 +14,7 @@ from validation.check.reading.attributes import operating_point
 from validation.check.reading.meaning import abscissa_of
 from validation.check.reading.places_of_pairs import heading_of_place
 from validation.check.reading.table import Column, Table, listed, numbers_of
+from validation.files.hdf5 import check_hdf5
 from validation.files.matlab import MOST_BYTES
 
 if TYPE_CHECKING:
@@ -94,6 +95,7 @@ def _check_links(path: Path) -> None:
     """Refuse variables of an HDF5 file whose values are in another file."""
     if not h5py.is_hdf5(path):
         return
+    check_hdf5(path, MOST_BYTES // 8)
     with h5py.File(path) as file:
         for key in file:
             if not isinstance(file.get(key, getlink=True), h5py.HardLink):

@@ -1,10 +1,11 @@
 """The chapters of the report, one module each, in their order. A module defines ``CHAPTER``.
 
-The chapter on unlike teeth and the chapter on a record are left out where they do not apply.
+The chapters at rest, on unlike teeth and on a record are left out where they do not apply.
 """
 
 from validation.reporting.chapter import Chapter
 from validation.reporting.chapters import (
+    at_rest,
     contact_loss,
     evidence,
     forces,
@@ -21,6 +22,7 @@ from validation.reporting.chapters import (
 CHAPTERS: tuple[Chapter, ...] = tuple(
     module.CHAPTER
     for module in (
+        at_rest,
         response,
         forces,
         contact_loss,

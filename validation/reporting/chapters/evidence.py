@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from contextlib import suppress
 from functools import cache
 from importlib import resources
 from typing import Any, NamedTuple
 
+from lumped.errors import NumericalError
 from lumped.labelling import provenance, source_hash
 from validation.reporting.blocks import Badge, Block, Column, Content, Table, Text, table_of
 from validation.reporting.chapter import Chapter
@@ -32,17 +34,15 @@ def stored_evidence() -> Mapping[str, Any]:
 def write(results: Results) -> Content:
     """Write the chapter."""
     failed = failed_checks(results)
-    blocks = (
-        _claims_table(results),
-        _assumptions_table(results),
-        _relations_table(results),
-        *_program(stored_evidence(), source_hash()),
-        _provenance_table(results),
-    )
+    blocks: list[Block] = []
+    for table in (_claims_table, _assumptions_table, _relations_table):
+        with suppress(NumericalError):  # page 1 says what could not be computed
+            blocks.append(table(results))
+    blocks += [*_program(stored_evidence(), source_hash()), _provenance_table(results)]
     result = (
         "Every check of the program passes." if not failed else f"{len(failed)} checks of the program fail."
     )
-    return Content(result, blocks)
+    return Content(result, tuple(blocks))
 
 
 def _claims_table(results: Results) -> Table:
@@ -167,4 +167,4 @@ def _program(evidence: Mapping[str, Any], source: str) -> tuple[Block, ...]:
     return Text(made), table
 
 
-CHAPTER = Chapter("evidence", "Evidence and versions", write, seconds=0.2)
+CHAPTER = Chapter("evidence", "Evidence and versions", write, seconds=0.2, needs_motion=False)

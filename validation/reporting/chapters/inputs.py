@@ -7,13 +7,13 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
-from lumped.path_of_contact import pair_stiffness
 from lumped.schema.assumed import WORDS, State
 from lumped.schema.bodies import bodies_of
 from lumped.schema.pair import GearPair, field_values, stated_unit
 from validation.exchange.drawing_table import HEADINGS, drawing_rows
 from validation.exchange.new_pair_file import reasons
 from validation.prediction.inputs import read_values, source_of, uncertain_inputs
+from validation.prediction.static import mean_mesh_stiffness
 from validation.reporting.blocks import (
     Badge,
     Cell,
@@ -44,7 +44,7 @@ def _parameters_table(results: Results) -> Table:
         part.field: uncertain.written for uncertain in uncertain_inputs(pair) for part in uncertain.parts
     }
     known_count, assumed = results.inputs
-    read = read_values(pair, contact_lost=results.like.contact_lost)
+    read = read_values(pair, contact_lost=results.backlash_counts)
     reason_of = reasons(pair)
     unread = len(values) - len(read)
     return table_of(
@@ -70,7 +70,7 @@ def _derived_table(results: Results) -> Table:
     pair = results.given
     g = results.pair.geometry
     angle = math.degrees(g.operating_pressure_angle)
-    stiffness = pair_stiffness(pair).mean() * g.contact_ratio
+    stiffness = mean_mesh_stiffness(pair)
     mass = bodies_of(pair).effective_mass
     return named_numbers(
         "derived",
@@ -126,4 +126,4 @@ def unit_text(unit: str) -> str:
     return {"um": "µm", "deg": "°", "degC": "°C"}.get(text, text.replace("*", " "))
 
 
-CHAPTER = Chapter("inputs", "Inputs", write, seconds=0.1)
+CHAPTER = Chapter("inputs", "Inputs", write, seconds=0.1, needs_motion=False)
