@@ -12,16 +12,11 @@ from __future__ import annotations
 from typing import Any
 
 from numba.core.compiler import Flags
-from numba.core.dispatcher import _FunctionCompiler
 
 #: Flags of a function that act on this function alone: ``inherit_if_not_set`` in numba hands on others.
 _NOT_HANDED_ON = ("release_gil", "no_cpython_wrapper", "no_cfunc_wrapper")
 #: With a numba that lacks one of these, functions are compiled with plain flags.
-_ARE_KNOWN = hasattr(_FunctionCompiler, "_customize_flags") and all(
-    name in getattr(Flags, "options", ()) for name in _NOT_HANDED_ON
-)
-
-
+_ARE_KNOWN = all(name in getattr(Flags, "options", ()) for name in _NOT_HANDED_ON)
 #: Values of the flags that are not set, and the hash, which numba takes of the names alone.
 _DEFAULTS = {name: option.default for name, option in getattr(Flags, "options", {}).items()}
 _HASH = hash(Flags())
@@ -54,5 +49,5 @@ def _handed_on(flags: Any) -> dict[str, Any]:
 
 def share_library_functions(dispatcher: Any) -> None:
     """Compile a function with flags under which functions of numba's library are shared."""
-    if _ARE_KNOWN:
+    if _ARE_KNOWN and hasattr(dispatcher._compiler, "_customize_flags"):
         dispatcher._compiler._customize_flags = SharingFlags

@@ -297,7 +297,8 @@ def test_options_are_noticed() -> None:
     def double(x: float) -> float:
         return 2.0 * x
 
-    options: list[dict[str, Any]] = [{}, {"nogil": True}, {"fastmath": {"contract"}}, {"long_loops": True}]
+    options: list[dict[str, Any]] = [{}, {"nogil": True}, {"fastmath": {"contract"}}, {"fastmath": {"nnan"}}]
+    options.append({"long_loops": True})
     kernels = [compiled(**chosen)(double) for chosen in options]
     assert len({kernel_stamps.stamp_of(kernel) for kernel in kernels}) == len(options)
 
@@ -420,7 +421,7 @@ def test_only_long_loops_are_copied_into_vector_instructions(empty_cache: None) 
         code = kernel.inspect_llvm(kernel.signatures[0])
         assert ("vector.body" in code) is long_loops
         results.append(values)
-    assert np.array_equal(*results)
+    assert np.array_equal(results[0], results[1])
 
 
 def test_a_function_of_numba_is_compiled_once_for_callers_of_all_kinds(empty_cache: None) -> None:
