@@ -27,11 +27,13 @@ from numba.core.compiler import CompileResult
 from numba.core.serialize import dumps
 
 from lumped.cache import cache_folder, cores, read_whole, write_whole
+from lumped.compiler_flags import share_library_functions
 from lumped.kernel_stamps import UnknownDependencyError, compiled_behind, described, stamp_of
 from lumped.linked_code import (
     LINKING_IS_KNOWN,
     LinkedCompiler,
     OptimisingCompiler,
+    ShortLoopCompiler,
     refuse_calls_from_python,
 )
 
@@ -56,19 +58,30 @@ def compiled(function: Any = None, /, **options: Any) -> Any:
     ``no_cpython_wrapper=True`` is for functions that compiled functions alone call. Their code is compiled
     and stored as a part of the callers, see ``lumped.linked_code``. ``optimised_first=True`` is for those of
     them that do most of the work of an inner loop, and have many functions below: the callers become faster,
-    and compiling takes longer.
+    and compiling takes longer. ``long_loops=True`` is for functions with an inner loop of many iterations:
+    LLVM writes their loops in vector instructions too, and compiling takes longer.
     """
     if function is None:
         return partial(_compiled, **options)
     return _compiled(function, **options)
 
 
-def _compiled(function: Callable[..., Any], /, *, optimised_first: bool = False, **options: Any) -> Any:
+def _compiled(
+    function: Callable[..., Any],
+    /,
+    *,
+    optimised_first: bool = False,
+    long_loops: bool = False,
+    **options: Any,
+) -> Any:
     linked = options.get("no_cpython_wrapper", False) and LINKING_IS_KNOWN
     if linked:
         options["pipeline_class"] = OptimisingCompiler if optimised_first else LinkedCompiler
+    elif LINKING_IS_KNOWN and not long_loops:
+        options["pipeline_class"] = ShortLoopCompiler
     dispatcher = numba.njit(error_model="numpy", no_cfunc_wrapper=True, **options)(function)
     if not numba.config.DISABLE_JIT:
+        share_library_functions(dispatcher)
         dispatcher._cache = _NoFiles(dispatcher) if linked else _KernelFiles(dispatcher)
         if linked:
             refuse_calls_from_python(dispatcher)

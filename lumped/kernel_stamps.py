@@ -103,7 +103,8 @@ class _Dependencies:
         function = dispatcher.py_func
         cells = function.__closure__ or ()
         bound = (
-            dispatcher.targetoptions, dispatcher.locals, function.__defaults__, function.__kwdefaults__,
+            dispatcher.targetoptions, dispatcher._compiler.pipeline_class.__qualname__, dispatcher.locals,
+            function.__defaults__, function.__kwdefaults__,
             tuple(cell.cell_contents for cell in cells),
         )  # fmt: skip
         name = function.__qualname__

@@ -1,9 +1,16 @@
-"""Compilation of functions that only other compiled functions call, without machine code of their own.
+"""What numba and LLVM do with a compiled function: less work than by default where the work is of no use.
+
+**Linked code** is of functions that only other compiled functions call, without machine code of their own.
 
 numba optimises each function and writes its machine code, and then repeats both in every function that calls
 it: the callee's intermediate code is linked into the caller, where it is inlined. Of a function that Python
 never calls the machine code is never used. Half of the time to compile the kernels went there. Here such a
 function stays intermediate code. It is optimised, and becomes machine code, as a part of its callers.
+
+**Short loops.** LLVM writes most loops several times: unrolled, in vector instructions, and the rest one by
+one. A loop over six coordinates or three tooth pairs never comes to the copies, but half of the time in LLVM
+goes there. The code of a function with short loops has each loop once. The results are the same bits: without
+fast arithmetic LLVM does not change the order of operations.
 """
 
 from __future__ import annotations
@@ -22,6 +29,35 @@ _ENVIRONMENT = "_ZN08NumbaEnv"
 #: one of them every function gets its own machine code, which compiles more slowly and computes the same.
 _STEPS = ("_optimize_final_module", "_finalize_final_module", "_verify_declare_only_symbols")
 LINKING_IS_KNOWN = all(hasattr(JITCodeLibrary, step) for step in (*_STEPS, "_finalize_dynamic_globals"))
+#: Without these of llvmlite the copies of loops cannot be left out.
+_TUNING_IS_KNOWN = all(
+    hasattr(llvm, name) for name in ("create_pipeline_tuning_options", "create_pass_builder")
+)
+#: Highest level of optimisation.
+_MOST = 3
+
+
+def optimise_short_loops(library: Any) -> None:
+    """Optimise the module of a library at the highest level, without copies of loops."""
+    if not _TUNING_IS_KNOWN:
+        JITCodeLibrary._optimize_final_module(library)
+        return
+    tuning = llvm.create_pipeline_tuning_options(speed_level=_MOST)
+    tuning.loop_unrolling = False
+    tuning.loop_interleaving = False
+    tuning.loop_vectorization = False
+    tuning.slp_vectorization = False
+    builder = llvm.create_pass_builder(library._codegen._tm, tuning)
+    passes = builder.getModulePassManager()
+    passes.add_refprune_pass()  # of numba: counts of references that cancel
+    passes.run(library._final_module, builder)
+
+
+class ShortLoopCode(JITCodeLibrary):  # type: ignore[misc]  # numba ships no types
+    """Machine code of a function in which LLVM copies no loop."""
+
+    def _optimize_final_module(self) -> None:
+        optimise_short_loops(self)
 
 
 class LinkedCode(JITCodeLibrary):  # type: ignore[misc]  # numba ships no types
@@ -60,37 +96,48 @@ class OptimisedCode(LinkedCode):
     """
 
     def _optimize_final_module(self) -> None:
-        """Optimise as numba does."""
-        JITCodeLibrary._optimize_final_module(self)
+        optimise_short_loops(self)
 
 
-@register_pass(mutates_CFG=False, analysis_only=False)
-class _IntoLinkedCode(LoweringPass):  # type: ignore[misc]
-    """Give the function a library that stays intermediate code."""
+class _IntoCode(LoweringPass):  # type: ignore[misc]
+    """Give the function a library of a kind."""
 
-    _name = "into_linked_code"
-    _library: type[LinkedCode] = LinkedCode
+    _library: type[JITCodeLibrary]
+    _stored = False
 
     def __init__(self) -> None:
         LoweringPass.__init__(self)
 
     def run_pass(self, state: Any) -> bool:
         state.library = self._library(state.targetctx.codegen(), state.func_id.func_qualname)
+        if self._stored:
+            state.library.enable_object_caching()
         return True
 
 
 @register_pass(mutates_CFG=False, analysis_only=False)
-class _IntoOptimisedCode(_IntoLinkedCode):
-    """Give the function a library that stays intermediate code and is optimised."""
+class _IntoLinkedCode(_IntoCode):
+    _name = "into_linked_code"
+    _library = LinkedCode
 
+
+@register_pass(mutates_CFG=False, analysis_only=False)
+class _IntoOptimisedCode(_IntoCode):
     _name = "into_optimised_code"
     _library = OptimisedCode
 
 
-class LinkedCompiler(CompilerBase):  # type: ignore[misc]
-    """numba's compiler in nopython mode, into linked code."""
+@register_pass(mutates_CFG=False, analysis_only=False)
+class _IntoShortLoopCode(_IntoCode):
+    _name = "into_short_loop_code"
+    _library = ShortLoopCode
+    _stored = True
 
-    _into_code: type[_IntoLinkedCode] = _IntoLinkedCode
+
+class _Compiler(CompilerBase):  # type: ignore[misc]
+    """numba's compiler in nopython mode, into code of a kind."""
+
+    _into_code: type[_IntoCode]
 
     def define_pipelines(self) -> list[Any]:
         pipeline = DefaultPassBuilder.define_nopython_pipeline(self.state)
@@ -99,10 +146,22 @@ class LinkedCompiler(CompilerBase):  # type: ignore[misc]
         return [pipeline]
 
 
-class OptimisingCompiler(LinkedCompiler):
-    """numba's compiler in nopython mode, into linked code that is optimised before it is linked."""
+class LinkedCompiler(_Compiler):
+    """Into linked code."""
+
+    _into_code = _IntoLinkedCode
+
+
+class OptimisingCompiler(_Compiler):
+    """Into linked code that is optimised before it is linked."""
 
     _into_code = _IntoOptimisedCode
+
+
+class ShortLoopCompiler(_Compiler):
+    """Into machine code in which LLVM copies no loop."""
+
+    _into_code = _IntoShortLoopCode
 
 
 def refuse_calls_from_python(dispatcher: Any) -> None:

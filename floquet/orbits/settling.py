@@ -192,7 +192,7 @@ def _stepped_laws(system: ContactSystem, steps: float) -> _SteppedLaws:
     )
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, long_loops=True)
 def _run(runs: _Runs, cycles: int, laws: _SteppedLaws, system: SystemTables, outputs: _Outputs) -> None:
     """Take all runs over some cycles and over the observed ones behind; the runs change in place."""
     work = _Stage(

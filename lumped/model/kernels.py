@@ -227,7 +227,7 @@ def step_memory(stages: int, rows: int) -> StepMemory:
     )
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, long_loops=True)
 def propagate(
     columns: FloatArray,
     recorded: int,
@@ -317,7 +317,7 @@ def solve_in_place(matrix: FloatArray, right: FloatArray) -> None:
             right[i, column] = value / matrix[i, i]
 
 
-@compiled
+@compiled(long_loops=True)
 def states_along(maps: FloatArray, initial: FloatArray, weights: FloatArray) -> FloatArray:
     """States (k + 1, n) at the ends of k intervals whose affine maps are known.
 
@@ -364,7 +364,7 @@ def multiply_maps(first: FloatArray, second: FloatArray, product: FloatArray) ->
                 product[row, column] += factor * first[inner, column]
 
 
-@compiled
+@compiled(long_loops=True)
 def chained(maps: FloatArray, group: IntArray) -> FloatArray:
     """Multiply consecutive affine maps of the same group into one map; (groups, n, n + columns).
 

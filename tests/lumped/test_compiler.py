@@ -12,12 +12,17 @@ from pathlib import Path
 from typing import Any
 
 import filelock
+import numpy as np
 import pytest
+from numba.core import event
+from numba.core.compiler import Flags
 from numba.core.dispatcher import Dispatcher
 
 import lumped.compiler
 from lumped import kernel_stamps
 from lumped.compiler import compiled
+from lumped.compiler_flags import SharingFlags
+from lumped.typing import FloatArray
 
 CALLED = """
 from lumped.compiler import compiled
@@ -293,6 +298,7 @@ def test_options_are_noticed() -> None:
         return 2.0 * x
 
     options: list[dict[str, Any]] = [{}, {"nogil": True}, {"fastmath": {"contract"}}, {"fastmath": {"nnan"}}]
+    options.append({"long_loops": True})
     kernels = [compiled(**chosen)(double) for chosen in options]
     assert len({kernel_stamps.stamp_of(kernel) for kernel in kernels}) == len(options)
 
@@ -392,3 +398,59 @@ def test_of_the_globals_in_compiled_functions_intrinsics_alone_count_with_files(
     assert len(stamps) == len(functions) > 100
     assert by_files
     assert {type(value).__name__ for value in by_files} == {"_Intrinsic"}
+
+
+@pytest.fixture
+def empty_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A cache folder without kernels: of a stored kernel there is no intermediate code, and no event."""
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+
+
+def _scaled(values: FloatArray, factor: float) -> None:
+    for i in range(values.size):
+        values[i] = 0.1 + factor * values[i]
+
+
+def test_only_long_loops_are_copied_into_vector_instructions(empty_cache: None) -> None:
+    """LLVM calls the copy of a loop in vector instructions vector.body. The results are the same bits."""
+    results = []
+    for long_loops in (False, True):
+        kernel: Any = compiled(long_loops=long_loops)(_scaled)
+        values = np.linspace(0.0, 1.0, 37)
+        kernel(values, 1.0 / 3.0)
+        code = kernel.inspect_llvm(kernel.signatures[0])
+        assert ("vector.body" in code) is long_loops
+        results.append(values)
+    assert np.array_equal(results[0], results[1])
+
+
+def test_a_function_of_numba_is_compiled_once_for_callers_of_all_kinds(empty_cache: None) -> None:
+    def larger(x: float, y: float) -> float:
+        return max(x, y)
+
+    names: list[str] = []
+
+    class Names(event.Listener):  # type: ignore[misc]  # numba ships no types
+        def on_start(self, one: Any) -> None:
+            names.append(one.data["dispatcher"].py_func.__qualname__)
+
+        def on_end(self, one: Any) -> None:
+            """Nothing."""
+
+    with event.install_listener("numba:compile", Names()):
+        for options in ({"nogil": True}, {}, {"nogil": True, "boundscheck": False}):
+            assert compiled(**options)(larger)(1.5, 2.5) == 2.5
+    assert names.count("ol_max.<locals>.impl") <= 1  # another test may have compiled it
+    assert names.count(larger.__qualname__) == 3
+
+
+def test_flags_that_numba_hands_on_part_functions() -> None:
+    plain = SharingFlags()
+    for name, value in (("nrt", True), ("fastmath", True), ("error_model", "numpy"), ("forceinline", True)):
+        changed = SharingFlags()
+        setattr(changed, name, value)
+        assert changed != plain, name
+    alone = SharingFlags()
+    alone.release_gil = True
+    assert alone == plain
+    assert hash(alone) == hash(plain) == hash(Flags())

@@ -60,7 +60,7 @@ def _next_coefficient(B: FloatArray, first: IntArray, end: IntArray, k: int, X: 
             store(X, (k + 1, i, c, 0), scaled(1.0 / (k + 1.0), entry))
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, long_loops=True)
 def taylor_flows(B: FloatArray, terms: IntArray, flows: FloatArray) -> None:
     """Transition matrices (k, n, n) of X' = sum_j B_j s^j X over 0 <= s <= 1, B (k, powers, n, n).
 
@@ -214,7 +214,7 @@ def _flow_and_sizes_before(steps: FloatArray, flow: FloatArray, sizes_before: Fl
         _copy(product, flow)
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, long_loops=True)
 def product_bounds(
     steps: FloatArray, errors: FloatArray, ends: IntArray, flows: FloatArray, bounds: FloatArray
 ) -> None:

@@ -1,0 +1,123 @@
+"""Processor time of compilation, of the first and second report, and of small commands, over a baseline.
+
+    python -m benchmarks.bench_first_report --baseline FOLDER [--pair nasa_28_28] [--rows kernels,first]
+
+FOLDER is a checkout of the commit that is the baseline (``git worktree add FOLDER c4723bf8``). Both run in
+turn, in fresh processes with the same Python, each with cache folders of its own. Times are user and system
+time of the process and its children: on a machine that others use, wall time says nothing.
+
+- kernels: all compilations of a report in one process, from an empty cache
+- first: the whole command with empty caches of kernels and finite elements, its second process included
+- second: the same command again
+- version, presets, init: the least of five runs
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import resource
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+COMMAND = "from validation.cli import main; main()"
+#: On one processor there is no second process. The sum is of compilations that no other compilation contains.
+COMPILING = """
+import os, sys, time
+os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
+from numba.core import event
+
+class Sum(event.Listener):
+    depth = 0
+    start = 0.0
+    seconds = 0.0
+
+    def on_start(self, _):
+        if self.depth == 0:
+            self.start = time.process_time()
+        self.depth += 1
+
+    def on_end(self, _):
+        self.depth -= 1
+        if self.depth == 0:
+            self.seconds += time.process_time() - self.start
+
+total = Sum()
+event.register("numba:compile", total)
+from validation.cli import main
+try:
+    main()
+except SystemExit:
+    print(total.seconds, file=sys.stderr)
+"""
+ROWS = ("kernels", "first", "second", "version", "presets", "init")
+
+
+class Tree:
+    """A checkout, with caches of its own in a folder."""
+
+    def __init__(self, source: Path, folder: Path) -> None:
+        self.folder = folder
+        folder.mkdir()
+        self.environment = {
+            **os.environ,
+            "PYTHONPATH": str(source.resolve()),
+            "NUMBA_CACHE_DIR": str(folder / "kernels"),
+            "XDG_CACHE_HOME": str(folder / "cache"),
+            "OPENBLAS_NUM_THREADS": "1",
+            "MPLBACKEND": "Agg",
+        }
+
+    def run(self, code: str, *arguments: str, **environment: str) -> tuple[float, str]:
+        """Processor time of a fresh process and its children [s], and what it wrote to stderr."""
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        done = subprocess.run(
+            [sys.executable, "-P", "-c", code, *arguments],
+            env=self.environment | environment,
+            cwd=self.folder,
+            check=True,
+            capture_output=True,
+            text=True,
+        )
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+        return seconds, done.stderr
+
+    def row(self, name: str, pair: str) -> float:
+        """Processor time of one row [s]."""
+        if name == "kernels":
+            _, written = self.run(
+                COMPILING, "report", pair, "-o", "compiled", NUMBA_CACHE_DIR=str(self.folder / "one_process")
+            )
+            return float(written.split()[-1])
+        if name in ("first", "second"):
+            return self.run(COMMAND, "report", pair, "-o", name)[0]
+        arguments = {
+            "version": ("--version",),
+            "presets": ("presets",),
+            "init": ("init", "-o", "pair.toml", "--force"),
+        }[name]
+        return min(self.run(COMMAND, *arguments)[0] for _ in range(5))
+
+
+def main(baseline: Path, pair: str, rows: list[str]) -> None:
+    print("| processor time [s] | baseline | here | ratio |\n|---|---|---|---|", flush=True)
+    with tempfile.TemporaryDirectory() as folder:
+        trees = [
+            Tree(baseline, Path(folder, "baseline")),
+            Tree(Path(__file__).parents[1], Path(folder, "here")),
+        ]
+        for name in rows:
+            before, after = (tree.row(name, pair) for tree in trees)
+            print(f"| {name} | {before:.2f} | {after:.2f} | {after / before:.2f} |", flush=True)
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--baseline", type=Path, required=True, help="checkout of the baseline")
+    parser.add_argument("--pair", default="nasa_28_28", help="preset or parameter file")
+    parser.add_argument("--rows", default=",".join(ROWS), help="rows of the table, in this order")
+    given = parser.parse_args()
+    main(given.baseline, given.pair, given.rows.split(","))
