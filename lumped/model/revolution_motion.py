@@ -270,12 +270,10 @@ def swings_of_period(
 ) -> dict[str, float]:
     """Return the peak to peak of each variable of ``SWINGING`` over a period of mesh cycles [m].
 
-    Extremes between two outputs count where the outputs resolve the fastest vibration. Where they do not, the
-    rate at an output says nothing about the next output: then the outputs alone count.
+    Extremes between two outputs are those of a cubic. Where a vibration lies between two outputs, the rate at
+    an output says nothing about the next output, and the cubic overshoots: see ``resolves``.
     """
     closed = np.append(time, cycles * system.period)
-    if not resolves(system, time.size // cycles):
-        return {name: float(np.ptp(values[name])) for name in SWINGING}
     periods, rates = (
         np.array([np.append(values[key], values[key][0]) for key in keys])
         for keys in (SWINGING, [f"{name}_dot" for name in SWINGING])
