@@ -23,7 +23,9 @@ from floquet.gear.axes import (
 )
 from floquet.gear.multipliers import (
     Feedback,
+    FeedbackMultipliers,
     OffLineOfAction,
+    corners_push_apart,
     feedback_system,
     fitted_block,
     stays_bounded,
@@ -206,7 +208,9 @@ class ChartSlice:
             undamped = damping[members] * self.reference.pair.mesh.damping_ratio == 0.0
             rubs = factors[:, : block.levels].any(axis=1)
             symplectic = undamped & stays_symmetric(block.feedback, self.reference.supports, rubs)
-            neutral = stays_bounded(result.multipliers, result.errors, symplectic, block.separate)
+            feedback = FeedbackMultipliers(result.multipliers, result.errors, symplectic)
+            driven = corners_push_apart(block.feedback)
+            neutral = stays_bounded(feedback, block.separate, T, driven=driven)
             coupled = result.multipliers.shape[1]
             yield node_results(places[members], values, errors, True, wanted, coupled, neutral)
 
