@@ -21,7 +21,7 @@ from floquet.engine.neutral import separate_from_mirror_images
 from floquet.engine.propagators.one_step import Propagator
 from floquet.engine.system import PeriodicSystem
 from floquet.gear.axes import GearVariation
-from floquet.gear.gains import MeshGains, OwnGains, own_tables
+from floquet.gear.gains import Intervals, MeshGains, OwnGains, own_tables
 from floquet.rank_one.batch import FastMonodromy, fast_monodromies, fast_multipliers
 from floquet.rank_one.piecewise import fit_pieces
 from floquet.rank_one.system import Gains, RankOneSystem
@@ -246,8 +246,14 @@ def gear_block(
     return fitted_block(feedback_system(variation), variation.stiffness_variation, rtol, [])
 
 
-def fitted_block(feedback: Feedback, factor: float, rtol: float, levels: Sequence[float]) -> RankOneSystem:
-    """Feedback with its gains as polynomials; ``factor`` and ``levels`` as in `MeshGains`.
+def fitted_block(
+    feedback: Feedback,
+    factor: float,
+    rtol: float,
+    levels: Sequence[float],
+    acts: Intervals | None = None,
+) -> RankOneSystem:
+    """Feedback with its gains as polynomials; ``factor``, ``levels`` and ``acts`` as in `MeshGains`.
 
     With levels, the part of the gains that is proportional to mu is ``varied``: a factor on mu then needs no
     new fit. With two levels mu may also rise and fall as a whole.
@@ -256,7 +262,7 @@ def fitted_block(feedback: Feedback, factor: float, rtol: float, levels: Sequenc
     metric = feedback.metric
     m = feedback.metric.size
     turning = system.pair.geometry.omega_pinion * system.gyroscopic
-    mesh = MeshGains(system, metric, feedback.misfit, factor, levels)
+    mesh = MeshGains(system, metric, feedback.misfit, factor, levels, acts)
     fits = fit_pieces(mesh, mesh.edges, metric, rtol=rtol)
     jumps = np.zeros((fits.phases.size, mesh.jumps.shape[0]))
     jumps[fits.edge_indices] = mesh.jumps.T

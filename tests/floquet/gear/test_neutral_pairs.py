@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from floquet import GEAR_AXES, gear_pair_multipliers, monodromy, stability_chart
+from floquet.gear.axes import GearVariation
 from floquet.gear.multipliers import (
     FeedbackMultipliers,
     OffLineOfAction,
@@ -12,7 +13,6 @@ from floquet.gear.multipliers import (
     gear_pair_system,
     stays_bounded,
 )
-from floquet.gear.axes import GearVariation
 from lumped import load_gear_pair
 from tests.unlike_pairs import UNLIKE, unlike_pair
 
