@@ -28,6 +28,7 @@ _NARROW = 1.01
 _LARGEST_DEVIATION = 1e-7
 _LARGEST_MIDDLE_DEVIATION = 1e-5
 _AT_BOUND = 1e-8  # least relative change of mu on a part of the path where law II is not at a bound
+_LITTLE_CLIPPED = 0.25  # largest share of the path
 _EQUAL = 1e-12  # values of mu that are the same, relative
 #: Of the mean of law II at an end of an interval and at the reference speed, both computed from fits.
 _FIT_ERRORS = 4.0 * FIT_TOLERANCE
@@ -233,8 +234,8 @@ class FrictionBetweenSpeeds:
             self._at_speed(fit, xi, rpm)
             for fit, rpm in zip(fits, (speeds.low, reference, speeds.high), strict=True)
         )
-        rising = self._rising(at_middle, xi, np.array(sorted(sections)))
         clipped = self._clipped_share(speeds)
+        rising = self._rising(at_middle, xi, np.array(sorted(sections)), clipped)
         sides = [self._deviations(at_middle, at_end, rising, clipped) for at_end in (at_low, at_high)]
         total = max(float(of_side @ np.diff(xi)) for of_side in sides) * (1.0 + 1e-6)
         if not math.isfinite(total):
@@ -271,10 +272,16 @@ class FrictionBetweenSpeeds:
         masks = [inside for _, inside in self._parts(middle, rpm)]
         return FrictionAtSpeed(rpm, np.argmax(masks, axis=0), *_ranges(fit, xi))
 
-    def _rising(self, reference: FrictionAtSpeed, xi: FloatArray, sections: FloatArray) -> BoolArray:
-        """Where the rise acts (k,): on whole sections between switches of mu at the reference speed."""
+    def _rising(
+        self, reference: FrictionAtSpeed, xi: FloatArray, sections: FloatArray, clipped: float
+    ) -> BoolArray:
+        """Where the rise acts (k,): on whole sections between switches of mu at the reference speed.
+
+        The mean of law II rises nearly as law II where little of the path is clipped.
+        """
         laws = [law for law, _ in self._parts(np.empty(0), reference.rpm)]
-        rising = np.array([law.shift is not None or self._follows_mean(law) for law in laws])
+        by_mean = clipped < _LITTLE_CLIPPED
+        rising = np.array([law.shift is not None or (by_mean and self._follows_mean(law)) for law in laws])
         of_part = rising[reference.law] & reference.moves
         section = np.searchsorted(sections, 0.5 * (xi[1:] + xi[:-1])) - 1
         some = np.zeros(sections.size, dtype=bool)

@@ -123,7 +123,7 @@ class FeedbackMultipliers(NamedTuple):
 def stays_bounded(
     block: FeedbackMultipliers, off_line: OffLineOfAction, periods: FloatArray, *, driven: bool
 ) -> BoolArray:
-    """Whether motions neither all die out nor grow (k,): proven, see docs/theory/floquet.md.
+    """Whether motions neither all die out nor grow (k,): PROVEN, see docs/theory/floquet.md.
 
     Parameters
     ----------

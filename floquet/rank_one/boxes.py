@@ -419,7 +419,7 @@ def _flow_in_patch(
     damping: FloatArray,
     factor_change: FloatArray,
 ) -> float:
-    """Bound on all flows within a cycle everywhere in a patch: from the middles of strips of the damping.
+    """PROVEN bound on all flows within a cycle everywhere in a patch: from the middles of strips of damping.
 
     Over a whole patch Gronwall's inequality would allow for flows that grow where damping makes them decay.
     """

@@ -127,14 +127,26 @@ def mixed_speeds(between: FrictionBetweenSpeeds) -> list[float]:
     return [rpm for rpm in speeds.tolist() if between.law.in_force(rpm) is None]
 
 
-@pytest.mark.parametrize("name", PAIRS)
-def test_the_rise_of_law_two_is_in_the_factors_where_laws_are_mixed(name: str) -> None:
-    """What is left is less than half of what mu changes by, but where regimes move fast along the path."""
-    between = friction(name, "composite")
+def speeds_of_one_law(between: FrictionBetweenSpeeds) -> list[float]:
+    """Slowest and fastest speed of law IV, law II and law III, each in force everywhere, if there are any."""
+    speeds = np.geomspace(0.05, 20.0, 60) * between.reference
+    laws = [between.law.in_force(rpm) for rpm in speeds.tolist()]
+    parts = [LAWS[name] for name in ("smoothed_coulomb", "benedict_kelley", "xu_kahraman")]
+    of_each = [[rpm for rpm, law in zip(speeds.tolist(), laws, strict=True) if law is one] for one in parts]
+    return [rpm for of_law in of_each for rpm in (*of_law[:1], *of_law[-1:])]
+
+
+@pytest.mark.parametrize(("name", "maximum"), [*((name, None) for name in PAIRS), ("fzg_c", 0.06)])
+def test_the_rise_of_law_two_is_in_the_factors_where_laws_are_mixed(name: str, maximum: float | None) -> None:
+    """What is left is less than half of what mu changes by, but where regimes move fast along the path.
+
+    With a low maximum of law II its bound moves along the path, too.
+    """
+    between = friction(name, "composite", **{"friction.maximum": maximum})
     speeds = mixed_speeds(between)
     rng = np.random.default_rng(3)
     shares = []
-    for low in speeds[:: max(1, len(speeds) // 8)]:
+    for low in speeds[:: max(1, len(speeds) // 8)] + speeds_of_one_law(between):
         for width in (0.004, 0.02, 0.1):
             patch = between.bounded_change(Speeds(low, low * (1.0 + width)))
             if patch is None:
