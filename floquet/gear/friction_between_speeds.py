@@ -318,6 +318,9 @@ class FrictionBetweenSpeeds:
                 by_law = np.where(
                     rising, np.minimum(_by_mean(changes[number], rise, clipped, reference), by_law), by_law
                 )
+            # |mu| of one law falls with speed: without a rise it changes most up to the end.
+            steady = (end.law == number) & ~rising
+            by_law = np.where(steady, np.minimum(by_law, difference), by_law)
             deviation = np.where(reference.law == number, by_law, deviation)
         for number in range(len(laws)):
             of_end = (end.law == number) & (reference.law != number)

@@ -169,7 +169,7 @@ def test_gains_that_deviate_change_the_matrix_by_no_more_than_the_bound(where: f
 
 
 @pytest.mark.parametrize(
-    ("T", "damping"), [((4.0, 9.0), (-0.9, -0.4)), ((6.0, 6.1), (0.01, 1.5)), ((6.0, 6.5), (0.2, 0.2))]
+    ("T", "damping"), [((2.0, 12.0), (-0.9, -0.4)), ((6.0, 6.1), (0.01, 0.3)), ((6.0, 6.1), (0.2, 0.2))]
 )
 def test_flows_in_a_patch_are_bounded_and_hardly_more_than_they_are(T, damping) -> None:
     """With negative damping they grow to the corner of the patch; with damping they stay near one."""
@@ -186,8 +186,8 @@ def test_flows_in_a_patch_are_bounded_and_hardly_more_than_they_are(T, damping) 
     )
     assert largest <= bound
     assert bound < 3.0 * largest or ratios[0] < 0.0
-    if ratios[0] > 0.0 and ratios[1] > 1.0:  # Gronwall from the middle alone
-        assert size.flow(ends, ratios, no_change, size.growth) > 10.0 * bound
+    if ratios[1] > ratios[0] > 0.0:  # Gronwall from the middle alone
+        assert size.flow(ends, ratios, no_change, size.growth) > 5.0 * bound
 
 
 def at(period: float, zeta: float) -> Point:
