@@ -31,6 +31,8 @@ _NARROWEST = 5e-4
 _WORTH = 0.05
 #: Largest width over the speed of such an interval at first.
 _WIDEST = 0.04
+#: Where one law is in force: of the deviation, see `FrictionBetweenSpeeds.patch`. Cells need few digits.
+_LOOSENESS = 30.0
 _TYPICAL_GROWTH = 2.0  # of flows within a cycle
 
 
@@ -117,17 +119,26 @@ class CellsOfMovingFriction:
             self._systems[law] = SystemsBetweenSpeeds(at_speed)
         return self._systems[law]
 
-    def _of_one_law(self, speeds: FloatArray) -> IntArray:
-        """Verdicts between increasing speeds (k+1,) at all of which one law is in force."""
+    def _of_one_law(self, speeds: FloatArray, looseness: float = _LOOSENESS) -> IntArray:
+        """Verdicts between increasing speeds (k+1,) at all of which one law is in force.
+
+        What wide intervals of speed leave undecided is proven again by narrow ones.
+        """
         systems = self.systems(self.law.in_force(float(speeds[0])), float(speeds[0]))
-        patches = [systems.friction.patch(*ends) for ends in pairwise(speeds.tolist())]
+        patches = [systems.friction.patch(*ends, looseness) for ends in pairwise(speeds.tolist())]
         verdict = np.zeros((len(patches), self.ratios.size - 1), dtype=np.intp)
         first = 0
         for _, members in groupby(patches, key=id):
             end = first + len(list(members))
             patch = patches[first]
             if patch is not None:
-                verdict[first:end] = self._proven(systems, systems.of(patch), speeds[first : end + 1])
+                ends = speeds[first : end + 1]
+                of_patch = systems.of(patch)
+                each = self._proven(systems, of_patch, ends)
+                undecided = (each == 0).mean() > _WORTH
+                if undecided and looseness > 1.0 and self._error(systems, of_patch, ends) > _SMALL_ERROR:
+                    each = np.where(each == 0, self._of_one_law(ends, 1.0), each)
+                verdict[first:end] = each
             first = end
         return verdict
 

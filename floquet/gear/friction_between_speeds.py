@@ -107,20 +107,23 @@ class FrictionBetweenSpeeds:
         law = self._in_force(self.reference)
         return law is not None and all(self._in_force(rpm) is law for rpm in (low, high))
 
-    def patch(self, low: float, high: float) -> SpeedPatch | None:
-        """Friction from a speed to another speed [rpm]; None: no bound is known."""
+    def patch(self, low: float, high: float, looseness: float = 1.0) -> SpeedPatch | None:
+        """Friction from a speed to another speed [rpm]; None: no bound is known.
+
+        With a ``looseness`` above 1 one patch serves wider intervals and deviates more.
+        """
         if self.constant:
             return SpeedPatch(self.reference, None, _one_factor, 0.0)
         law = self._in_force(self.reference)
         if law is None or not self.one_law(low, high):
             return self.bounded_change(self._around(low, high, _NARROW))
         if self.law.mean_is_of_law_two(self.reference):
-            return self._nearly_exact(self.line_of_the_mean, law, low, high)
+            return self._nearly_exact(self.line_of_the_mean, law, Speeds(low, high), looseness)
         if law.factor is not None:
             return self.power_of_speed(law)
         if law.shift is None:
             return self.bounded_change(self._around(low, high, _NARROW))
-        return self._nearly_exact(self.shifted, law, low, high)
+        return self._nearly_exact(self.shifted, law, Speeds(low, high), looseness)
 
     def bounds(self, low: float, high: float) -> SpeedPatch | None:
         """Friction with factors that lie between the factors at both ends; None: no bound is known."""
@@ -144,14 +147,18 @@ class FrictionBetweenSpeeds:
         return Speeds(min(self.reference * ratio**start, low), max(self.reference * ratio**end, high))
 
     def _nearly_exact(
-        self, between: Callable[[FrictionLaw, Speeds], SpeedPatch], law: FrictionLaw, low: float, high: float
+        self,
+        between: Callable[[FrictionLaw, Speeds], SpeedPatch],
+        law: FrictionLaw,
+        speeds: Speeds,
+        looseness: float,
     ) -> SpeedPatch:
         """Friction between the widest speeds of a small deviation."""
         for ratio, largest in ((_WIDE, _LARGEST_DEVIATION), (_MIDDLE, _LARGEST_MIDDLE_DEVIATION)):
-            patch = between(law, self._around(low, high, ratio))
-            if patch.deviation <= largest * self.mean * self.length:
+            patch = between(law, self._around(*speeds, ratio))
+            if patch.deviation <= looseness * largest * self.mean * self.length:
                 return patch
-        return between(law, self._around(low, high, _NARROW))
+        return between(law, self._around(*speeds, _NARROW))
 
     @cached_property
     def mean(self) -> float:

@@ -95,7 +95,7 @@ def proven_cells(
             slow = slow_period(system, damping[[low, high]], end_factors, deviation)
             if leaf or slow <= periods[0]:
                 verdict[np.searchsorted(periods, slow) :, low:high] = 1
-                return slow <= periods[-1]
+                return bool(slow <= periods[-1])
         middle = (low + high) // 2
         # With less damping hardly more is proven.
         return by_slow_variation(middle, high) and by_slow_variation(low, middle)
@@ -426,7 +426,7 @@ def _flow_in_patch(
     one = np.ones(1)
     d = float(size.change(periods, damping, one, one, factor_change[:, :1])[0])
     count = int(np.clip(math.ceil(d / _STRIP), 1, _STRIPS)) if damping[1] > damping[0] else 1
-    edges = np.linspace(*damping, count + 1)
+    edges = np.linspace(damping[0], damping[1], count + 1)
     largest = 0.0
     for ends in pairwise(edges):
         strip = np.array(ends)

@@ -92,21 +92,24 @@ def test_the_mean_coefficient_is_a_line_in_the_logarithm_of_speed_within_a_group
     assert groups.max() < 0.4 * speeds.size or name.startswith("rack")
 
 
-#: Pairs and laws of which breaks move: bounds of law II in its mean or in the law itself, regimes of law V.
+#: Pairs, laws and speeds at which breaks move: bounds of law II in its mean or itself, regimes of law V.
 MOVING = [
-    (*MEANS[0], 0.97), (*MEANS[1], 0.97), ("rack_25_degrees_always_pushing", "benedict_kelley", 0.97),
-    ("heavily_relieved_under_load", "composite", 0.95), ("fzg_c", "composite", 0.95),
-]  # fmt: skip
+    ("heavily_relieved_under_load", "smoothed_coulomb", (900.0, 2500.0)),
+    ("rack_25_degrees_always_pushing", "benedict_kelley", (5000.0, 5300.0)),
+    ("fzg_c", "composite", (5000.0, 5400.0)),
+]
 
 
 @pytest.mark.filterwarnings("ignore::lumped.errors.LawRangeWarning")
-@pytest.mark.parametrize(("name", "law", "least"), MOVING)
-def test_cells_are_proven_where_breaks_of_friction_move(name: str, law: str, least: float) -> None:
+@pytest.mark.parametrize(("name", "law", "ends"), MOVING)
+def test_cells_are_proven_where_breaks_of_friction_move(
+    name: str, law: str, ends: tuple[float, float]
+) -> None:
     """A proven cell has the verdict of the full grid at random points in it."""
     changes = {"friction.law": law, "friction.coefficient": None, "friction.sharpness": None}
     pair = (unlike_pair(name) if name in UNLIKE else load_gear_pair(name)).healthy.with_(changes)
-    speeds = np.geomspace(700.0, 19000.0, 41)
-    axes = {"speed_rpm": speeds, "damping_ratio": np.linspace(0.005, 0.06, 6)}
+    speeds = np.linspace(*ends, 9)
+    axes = {"speed_rpm": speeds, "damping_ratio": np.linspace(0.01, 0.06, 4)}
     chart = stability_chart(pair, axes, rtol=1e-8, prove=True, supports="springs")
     cells = chart.cell_verdict.to_numpy()
     families = friction_families(GearVariation.of(pair, "springs"), speeds)
@@ -116,9 +119,9 @@ def test_cells_are_proven_where_breaks_of_friction_move(name: str, law: str, lea
             of_group = family.members[family.smooth_groups(speeds[family.members]) == group]
             moves[of_group[:-1][np.diff(of_group) == 1]] = False
     assert moves.any()
-    assert (cells[moves] != 0).mean() > least
+    assert (cells[moves] != 0).mean() > 0.9
     rng = np.random.default_rng(2)
-    rows = np.flatnonzero((cells != 0).any(axis=1))[::2]
+    rows = np.flatnonzero((cells != 0).any(axis=1))
     points = {
         "speed_rpm": speeds[rows] + rng.uniform(size=rows.size) * np.diff(speeds)[rows],
         "damping_ratio": axes["damping_ratio"][:-1] + rng.uniform(0.0, np.diff(axes["damping_ratio"])),
