@@ -134,7 +134,7 @@ class CellsOfMovingFriction:
             if patch is not None:
                 ends = speeds[first : end + 1]
                 of_patch = systems.of(patch)
-                each = self._proven(systems, of_patch, ends)
+                each = self.proven(systems, of_patch, ends)
                 undecided = (each == 0).mean() > _WORTH
                 if undecided and looseness > 1.0 and self._error(systems, of_patch, ends) > _SMALL_ERROR:
                     each = np.where(each == 0, self._of_one_law(ends, 1.0), each)
@@ -163,7 +163,7 @@ class CellsOfMovingFriction:
         verdict = np.zeros((speeds.size - 1, self.ratios.size - 1), dtype=np.intp)
         if patch is not None:
             of_patch = systems.of(patch)
-            verdict = self._proven(systems, of_patch, speeds)
+            verdict = self.proven(systems, of_patch, speeds)
             self.narrowest = float(speeds[-1] / speeds[0]) - 1.0
             if (verdict == 0).mean() <= _WORTH or self._error(systems, of_patch, speeds) <= _SMALL_ERROR:
                 return verdict
@@ -179,7 +179,7 @@ class CellsOfMovingFriction:
         middle = speeds.size // 2
         return np.concatenate([self._halved(speeds[: middle + 1]), self._halved(speeds[middle:])])
 
-    def _proven(self, systems: SystemsBetweenSpeeds, of_patch: PatchSystem, speeds: FloatArray) -> IntArray:
+    def proven(self, systems: SystemsBetweenSpeeds, of_patch: PatchSystem, speeds: FloatArray) -> IntArray:
         """Verdicts between increasing speeds (k+1,) that share one patch of friction."""
         periods = systems.period_times_rpm / speeds[::-1]
         factors, deviation = of_patch.factors, of_patch.deviation

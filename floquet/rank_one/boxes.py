@@ -400,7 +400,8 @@ def growth_at(problem: Problem, size: PatchSize, point: Point) -> float:
     if not largest * wrong < 0.5:
         return math.inf
     # Norms grow within a step, half of which has the angle, by the symmetric part of A alone.
-    norms = np.array([np.linalg.norm(problem.v / problem.omega), point.zeta * np.linalg.norm(problem.v)])
+    zeta = abs(point.zeta)
+    norms = np.array([np.linalg.norm(problem.v / problem.omega), zeta * np.linalg.norm(problem.v)])
     rates = np.tensordot(np.abs(point.weights), problem.sizes + problem.fit_error, 1) * norms
     growth_rates = (
         rates @ [0.5, 1.0] + problem.drive + problem.noise + problem.gyroscopic_drive / point.period

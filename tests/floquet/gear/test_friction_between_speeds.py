@@ -6,11 +6,12 @@ import pytest
 from floquet import fast_multipliers
 from floquet.engine.multipliers import multipliers_with_bounds
 from floquet.gear.axes import GEAR_AXES, GearVariation, LawOverSpeed
+from floquet.gear.cells_of_moving_friction import CellParts, CellsOfMovingFriction
 from floquet.gear.friction_between_speeds import FrictionBetweenSpeeds, SpeedPatch, Speeds, clipped_lengths
 from floquet.gear.multipliers import feedback_system, fitted_block
 from floquet.gear.systems_between_speeds import SystemsBetweenSpeeds
 from floquet.rank_one.batch import fast_monodromies
-from floquet.rank_one.boxes import PatchSize, growth_at
+from floquet.rank_one.boxes import GainDeviation, PatchSize, growth_at
 from floquet.rank_one.kernels.gains import Point
 from floquet.rank_one.period_search import PatchSystem
 from lumped import load_gear_pair
@@ -199,6 +200,21 @@ def test_the_system_between_speeds_has_the_multipliers_of_each_speed(name: str) 
             distance = np.abs(values[:, None] - exact.multipliers[0]).min(axis=0)
             assert (distance <= bounds.max() + exact.errors[0]).all()
             assert distance.max() > 1e-3 * bounds.min()
+
+
+def test_cells_are_proven_for_gains_that_deviate_and_not_for_gains_that_deviate_without_a_limit() -> None:
+    variation = GearVariation.of(
+        load_gear_pair("fzg_c").healthy.with_(NO_PARAMETERS | {"friction.law": "composite"}), "springs"
+    )
+    cells = CellsOfMovingFriction(variation, np.linspace(0.5, 1.0, 3), CellParts(1, 1))
+    speeds = np.array([5300.0, 5310.0])
+    systems = cells.systems(None, 5300.0)
+    patch = systems.friction.bounded_change(Speeds(*speeds.tolist()))
+    assert patch is not None
+    one = systems.of(patch)
+    assert (cells.proven(systems, one, speeds) == 1).all()
+    without_limit = one._replace(deviation=GainDeviation(1e12, 1e12))
+    assert not cells.proven(systems, without_limit, speeds).any()
 
 
 def point(one: PatchSystem, T: np.ndarray) -> Point:
