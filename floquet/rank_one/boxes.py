@@ -39,6 +39,7 @@ _ROWS = 8  # rows of cells for which one Lyapunov function is sought
 _STRIP = 0.1  # integral of the change of A over a strip of a patch, if there are no more than so many strips
 _STRIPS = 24
 _CLOSE = 1.1  # ratio of periods below which all of them are likely to be long together
+_HOPELESS = 1e9  # error of a patch in which nothing is decided
 _BATCH = 512  # boxes that are decided together
 
 
@@ -133,6 +134,7 @@ def proven_cells(
                 )
             if patch is not None:
                 growth = min(1.1 * patch.growth, 10.0)
+            if patch is not None and patch.error < _HOPELESS:
                 result = _subdivided(patch, periods[i : b + 1], damping[c : d + 1])
                 block_verdict[block_verdict == 0] = result[block_verdict == 0]
             c = d

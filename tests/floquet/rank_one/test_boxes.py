@@ -390,7 +390,7 @@ def test_the_error_of_a_patch_is_that_of_the_theorem() -> None:
 def test_gains_that_deviate_leave_cells_unproven() -> None:
     """The more they deviate the fewer cells are proven; no verdict changes its sign."""
     system, _ = meissner()
-    T, zeta = np.linspace(2.0, 9.0, 15), np.linspace(0.02, 0.1, 5)
+    T, zeta = np.linspace(7.0, 7.1, 5), np.linspace(0.02, 0.1, 9)
     exact = proven_cells(system, T, zeta, no_factors)
     counts = []
     for strength in (1e-6, 1e-3, 1e-2, 1.0):
