@@ -401,6 +401,9 @@ def test_gains_that_deviate_leave_cells_unproven() -> None:
     assert counts == sorted(counts, reverse=True)
     assert counts[2] < counts[0]
     assert counts[-1] == 0
+    long, high = np.linspace(200.0, 201.0, 3), np.array([0.3, 0.4])  # slow variation
+    assert (proven_cells(system, long, high, no_factors) == 1).all()
+    assert not proven_cells(system, long, high, no_factors, deviation=GainDeviation(10.0, 0.0)).any()
 
 
 def test_the_slow_period_is_that_of_its_formula() -> None:
