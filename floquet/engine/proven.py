@@ -23,11 +23,13 @@ sections are those of docs/theory/proven_bounds.md. tests/floquet/engine/test_pr
 | the exact invariant subspace of a cluster is as near as this | floquet/engine/multipliers.py: clusters_of | Multipliers |
 | without damping all multipliers are simple and on the unit circle | floquet/engine/neutral.py: on_unit_circle | On the unit circle |
 | without damping all multipliers are on the unit circle, and motions are bounded though multipliers coincide | floquet/engine/neutral.py: definite_signatures | On the unit circle |
+| without friction and damping motions that tip corners drive are bounded | floquet/gear/multipliers.py: stays_bounded | On the unit circle |
 | motions off the line of action have these multipliers | floquet/gear/multipliers.py: OffLineOfAction | Multipliers |
 | with teeth that differ the rate is wrong by at most this | floquet/gear/multipliers.py: _of_cycles | Teeth that differ |
 | all slower speeds are stable | floquet/rank_one/boxes.py: slow_period | Between the nodes of a chart |
 | the monodromy matrix over a patch of a chart is this polynomial but for this | floquet/rank_one/boxes.py: FlowPolynomial | Between the nodes of a chart |
 | a cell of a chart is stable, or unstable, everywhere in it | floquet/rank_one/boxes.py: decided | Between the nodes of a chart |
+| everywhere in a patch flows within a cycle are at most this | floquet/rank_one/boxes.py: _flow_in_patch | Between the nodes of a chart |
 | entries with these ranges have no multiplier on the unit circle | floquet/rank_one/boxes.py: verdicts_by_disks | Between the nodes of a chart |
 | an interval of periods is stable, or unstable, everywhere in it | floquet/rank_one/boxes.py: decided_intervals | The nearest unstable speed |
 | all periods between the first and the nearest unstable one are stable, but for intervals that are listed | floquet/rank_one/period_search.py: proven_periods | The nearest unstable speed |

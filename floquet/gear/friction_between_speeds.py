@@ -14,10 +14,11 @@ from typing import NamedTuple
 import numpy as np
 
 from floquet.gear.axes import GearVariation, LawOverSpeed, depends_on_speed, operating_rpm
+from floquet.gear.gains import Intervals
 from lumped.friction.base import FIT_TOLERANCE, FrictionLaw
 from lumped.path_function import PathFunction
 from lumped.path_of_contact.friction import fit_law
-from lumped.typing import BoolArray, FloatArray
+from lumped.typing import BoolArray, FloatArray, IntArray
 
 #: Ratios of neighbouring speeds between which one reference serves; narrow where the bound is large.
 _WIDE = 1.5
@@ -26,6 +27,8 @@ _NARROW = 1.01
 #: Largest deviations between wide speeds, over the mean of |mu| times the path; the fits cause some 1e-8.
 _LARGEST_DEVIATION = 1e-7
 _LARGEST_MIDDLE_DEVIATION = 1e-5
+_AT_BOUND = 1e-8  # least relative change of mu on a part of the path where law II is not at a bound
+_LITTLE_CLIPPED = 0.25  # largest share of the path
 _EQUAL = 1e-12  # values of mu that are the same, relative
 #: Of the mean of law II at an end of an interval and at the reference speed, both computed from fits.
 _FIT_ERRORS = 4.0 * FIT_TOLERANCE
@@ -40,12 +43,14 @@ class SpeedPatch(NamedTuple):
     level : as in `FrictionFamily`
     factors : speeds (k,) [rpm] -> factors (k, 1 or 2) as in `FrictionFamily`
     deviation : bound, at every speed, on the integral over the path of |mu less the sum with factors| [m]
+    acts : intervals of the path on which the level acts; None: everywhere
     """
 
     reference: float
     level: float | None
     factors: Callable[[FloatArray], FloatArray]
     deviation: float
+    acts: Intervals | None = None
 
 
 class ClippedLengths(NamedTuple):
@@ -83,6 +88,7 @@ class FrictionBetweenSpeeds:
             self.law = LawOverSpeed.of(variation)
             self.length = self.law.ends[1] - self.law.ends[0]
         # An instance serves one search: its results are kept as long.
+        self.power_of_speed = cache(self._power_of_speed)
         self.line_of_the_mean = cache(self._line_of_the_mean)
         self.shifted = cache(self._shifted)
         self.bounded_change = cache(self._bounded_change)
@@ -95,28 +101,36 @@ class FrictionBetweenSpeeds:
     def _in_force(self, rpm: float) -> FrictionLaw | None:
         return self.law.in_force(rpm)
 
-    def patch(self, low: float, high: float) -> SpeedPatch | None:
-        """Friction from a speed to another speed [rpm]; None: no bound is known."""
+    def one_law(self, low: float, high: float) -> bool:
+        """Whether the law of the reference speed is in force everywhere on the path at all speeds between."""
+        # The film grows with speed everywhere, so that a law in force at both ends is in force in between.
+        law = self._in_force(self.reference)
+        return law is not None and all(self._in_force(rpm) is law for rpm in (low, high))
+
+    def patch(self, low: float, high: float, looseness: float = 1.0) -> SpeedPatch | None:
+        """Friction from a speed to another speed [rpm]; None: no bound is known.
+
+        With a ``looseness`` above 1 one patch serves wider intervals and deviates more.
+        """
         if self.constant:
             return SpeedPatch(self.reference, None, _one_factor, 0.0)
         law = self._in_force(self.reference)
-        # The film grows with speed everywhere, so that a law in force at both ends is in force in between.
-        if law is None or any(self._in_force(rpm) is not law for rpm in (low, high)):
+        if law is None or not self.one_law(low, high):
             return self.bounded_change(self._around(low, high, _NARROW))
         if self.law.mean_is_of_law_two(self.reference):
-            return self._nearly_exact(self.line_of_the_mean, law, low, high)
+            return self._nearly_exact(self.line_of_the_mean, law, Speeds(low, high), looseness)
         if law.factor is not None:
-            return SpeedPatch(self.reference, None, self._power(law), 0.0)
+            return self.power_of_speed(law)
         if law.shift is None:
             return self.bounded_change(self._around(low, high, _NARROW))
-        return self._nearly_exact(self.shifted, law, low, high)
+        return self._nearly_exact(self.shifted, law, Speeds(low, high), looseness)
 
     def bounds(self, low: float, high: float) -> SpeedPatch | None:
         """Friction with factors that lie between the factors at both ends; None: no bound is known."""
         if self.constant:
             return self.patch(low, high)
         law = self._in_force(self.reference)
-        if law is None or any(self._in_force(rpm) is not law for rpm in (low, high)):
+        if law is None or not self.one_law(low, high):
             return None
         if self.law.mean_is_of_law_two(self.reference):  # which falls with speed
             deviation = law.average_slope * _FIT_ERRORS * self.length
@@ -133,14 +147,18 @@ class FrictionBetweenSpeeds:
         return Speeds(min(self.reference * ratio**start, low), max(self.reference * ratio**end, high))
 
     def _nearly_exact(
-        self, between: Callable[[FrictionLaw, Speeds], SpeedPatch], law: FrictionLaw, low: float, high: float
+        self,
+        between: Callable[[FrictionLaw, Speeds], SpeedPatch],
+        law: FrictionLaw,
+        speeds: Speeds,
+        looseness: float,
     ) -> SpeedPatch:
         """Friction between the widest speeds of a small deviation."""
         for ratio, largest in ((_WIDE, _LARGEST_DEVIATION), (_MIDDLE, _LARGEST_MIDDLE_DEVIATION)):
-            patch = between(law, self._around(low, high, ratio))
-            if patch.deviation <= largest * self.mean * self.length:
+            patch = between(law, self._around(*speeds, ratio))
+            if patch.deviation <= looseness * largest * self.mean * self.length:
                 return patch
-        return between(law, self._around(low, high, _NARROW))
+        return between(law, self._around(*speeds, _NARROW))
 
     @cached_property
     def mean(self) -> float:
@@ -154,6 +172,10 @@ class FrictionBetweenSpeeds:
 
     def _power(self, law: FrictionLaw) -> Callable[[FloatArray], FloatArray]:
         return lambda speeds: np.array([[self._factor(law, float(rpm))] for rpm in speeds])
+
+    def _power_of_speed(self, law: FrictionLaw) -> SpeedPatch:
+        """Laws III and ISO/TR 14179-2: mu is the same function at all speeds, times a power of the speed."""
+        return SpeedPatch(self.reference, None, self._power(law), 0.0)
 
     def _line_of_the_mean(self, law: FrictionLaw, speeds: Speeds) -> SpeedPatch:
         """Laws I and IV: mu is proportional to the mean of law II, nearly a line over log speed.
@@ -195,36 +217,123 @@ class FrictionBetweenSpeeds:
         return SpeedPatch(reference, level, factors, rise * clipped + _FIT_ERRORS * self.length)
 
     def _bounded_change(self, speeds: Speeds) -> SpeedPatch | None:
-        """Law V where several laws are in force: mu at the middle speed, and how far mu is from it.
+        """Law V where several laws are in force: mu at the middle speed, a rise, and how far mu is from it.
 
-        Where one law is in force at both ends, mu changes by what speed changes this law. Where another law
-        comes into force in between, mu changes by the largest |mu| of both laws at most.
+        The rise is that of law II. It acts where at the middle speed law II or IV is in force and not at a
+        bound: there mu rises as a whole, or nearly so. None: between two speeds some place of the path passes
+        through three laws.
         """
         if self.law.law.parts is None:
             return None
         reference = math.sqrt(speeds.low * speeds.high)
         low, high = self.law.ends
-        breaks = {low, self.law.path.L_XP, high}
-        for rpm in (*speeds, reference):
+        sections = {low, self.law.path.L_XP, high}
+        breaks = set(sections)
+        fits = []
+        for rpm in (speeds.low, reference, speeds.high):
             _, switches = self.law.values(rpm)
-            breaks.update(xi for xi in switches if low < xi < high)
+            fits.append(fit_law(*self.law.where_friction_acts(rpm), self.law.law.name))
+            breaks.update(float(xi) for xi in (*switches, *fits[-1].breaks) if low < xi < high)
+            if rpm == reference:
+                sections.update(float(xi) for xi in switches if low < xi < high)
         xi = np.array(sorted(breaks))
         at_low, at_middle, at_high = (
-            _sizes(fit_law(*self.law.where_friction_acts(rpm), self.law.law.name), xi)
-            for rpm in (speeds.low, reference, speeds.high)
+            self._at_speed(fit, xi, rpm)
+            for fit, rpm in zip(fits, (speeds.low, reference, speeds.high), strict=True)
         )
+        clipped = self._clipped_share(speeds)
+        rising = self._rising(at_middle, xi, np.array(sorted(sections)), clipped)
+        sides = [self._deviations(at_middle, at_end, rising, clipped) for at_end in (at_low, at_high)]
+        total = max(float(of_side @ np.diff(xi)) for of_side in sides) * (1.0 + 1e-6)
+        if not math.isfinite(total):
+            return None
+        level = float(at_middle.largest.mean())
+        shift = self._law_two.shift
+        assert shift is not None
+        at_reference = shift(*self.law.where_friction_acts(reference))
+        each = (shift(*self.law.where_friction_acts(speeds.high)) - at_reference) / math.log(
+            speeds.high / reference
+        )
+
+        def factors(rpm: FloatArray) -> FloatArray:
+            rises = each * np.log(rpm / reference)
+            return np.stack([np.ones_like(rises), 1.0 + rises / level], axis=1)
+
+        acts = tuple((float(a), float(b)) for a, b in zip(xi[:-1][rising], xi[1:][rising], strict=True))
+        return SpeedPatch(reference, level, factors, total + _FIT_ERRORS * self.length, _joined(acts))
+
+    @cached_property
+    def _law_two(self) -> FrictionLaw:
+        """The part of law V that rises as a whole."""
+        return next(law for law, _ in self._parts(np.empty(0), self.reference) if law.shift is not None)
+
+    def _clipped_share(self, speeds: Speeds) -> float:
+        """Bound on the share of the path on which law II is at its bounds at some speed of an interval."""
+        law_two = self.law.law_two()
+        at_low, at_high = (clipped_lengths(law_two, rpm) for rpm in speeds)
+        return (at_low.upper + at_high.zero) / (law_two.ends[1] - law_two.ends[0])
+
+    def _at_speed(self, fit: PathFunction, xi: FloatArray, rpm: float) -> FrictionAtSpeed:
+        """Friction at a speed between positions (k+1,), all breaks of the fit among them."""
         middle = 0.5 * (xi[1:] + xi[:-1])
-        change = np.zeros(middle.size)
-        parts = zip(self._parts(middle, speeds.low), self._parts(middle, speeds.high), strict=True)
-        for (law, inside_low), (_, inside_high) in parts:
-            near = self._change(law, speeds.low, reference), self._change(law, speeds.high, reference)
-            by_law = np.maximum(near[0].of(at_middle), near[1].of(at_middle))
-            change = np.where(inside_low & inside_high, by_law, change)
-            # |mu| of a law falls with speed: of the law at the high speed it is largest at the low speed.
-            at_low_speed = at_high + self._change(law, speeds.low, speeds.high).of(at_high)
-            change = np.where(inside_high & ~inside_low, np.maximum(at_low, at_low_speed), change)
-        total = float((change * np.diff(xi)).sum()) * (1.0 + 1e-6)
-        return SpeedPatch(reference, None, _one_factor, total + _FIT_ERRORS * self.length)
+        masks = [inside for _, inside in self._parts(middle, rpm)]
+        return FrictionAtSpeed(rpm, np.argmax(masks, axis=0), *_ranges(fit, xi))
+
+    def _rising(
+        self, reference: FrictionAtSpeed, xi: FloatArray, sections: FloatArray, clipped: float
+    ) -> BoolArray:
+        """Where the rise acts (k,): on whole sections between switches of mu at the reference speed.
+
+        The mean of law II rises nearly as law II where little of the path is clipped.
+        """
+        laws = [law for law, _ in self._parts(np.empty(0), reference.rpm)]
+        by_mean = clipped < _LITTLE_CLIPPED
+        rising = np.array([law.shift is not None or (by_mean and self._follows_mean(law)) for law in laws])
+        of_part = rising[reference.law] & reference.moves
+        section = np.searchsorted(sections, 0.5 * (xi[1:] + xi[:-1])) - 1
+        some = np.zeros(sections.size, dtype=bool)
+        np.logical_or.at(some, section, of_part)
+        return np.asarray(some[section] & rising[reference.law])
+
+    def _follows_mean(self, law: FrictionLaw) -> bool:
+        """Whether a law is a function of the position times the mean of law II."""
+        return law.coefficient and self.law.settings.coefficient is None
+
+    def _deviations(
+        self, reference: FrictionAtSpeed, end: FrictionAtSpeed, rising: BoolArray, clipped: float
+    ) -> FloatArray:
+        """Bounds (k,) on what mu deviates from mu at the reference and the rise, at all speeds up to an end.
+
+        Where one law is in force at both speeds, this law changes with speed. Elsewhere mu at a speed is that
+        of the law of either speed: the difference of both laws, plus what speed changes the law of the end;
+        or what speed changes the law of the reference. inf: three laws.
+        """
+        laws = [law for law, _ in self._parts(np.empty(0), reference.rpm)]
+        changes = [self._change(law, end.rpm, reference.rpm) for law in laws]
+        back = [self._change(law, reference.rpm, end.rpm) for law in laws]
+        rise = next(c.shift for law, c in zip(laws, changes, strict=True) if law is self._law_two)
+        moved = np.where(rising, rise, 0.0)
+        exact = rising & reference.moves & (end.law == reference.law) & end.moves
+        deviation = np.zeros(reference.law.size)
+        difference = np.maximum(reference.largest - end.least, end.largest - reference.least)
+        for number, law in enumerate(laws):
+            # Both the law and the rise change mu in the same direction: the larger one, at most.
+            by_law = np.maximum(changes[number].of(reference.largest), moved)
+            if law is self._law_two:
+                by_law = np.where(exact, 0.0, by_law)
+            elif self._follows_mean(law):
+                by_law = np.where(
+                    rising, np.minimum(_by_mean(changes[number], rise, clipped, reference), by_law), by_law
+                )
+            # |mu| of one law falls with speed: without a rise it changes most up to the end.
+            steady = (end.law == number) & ~rising
+            by_law = np.where(steady, np.minimum(by_law, difference), by_law)
+            deviation = np.where(reference.law == number, by_law, deviation)
+        for number in range(len(laws)):
+            of_end = (end.law == number) & (reference.law != number)
+            from_end = difference + back[number].of(end.largest) + moved
+            deviation = np.where(of_end, np.maximum(deviation, from_end), deviation)
+        return np.where(np.abs(reference.law - end.law) > 1, np.inf, deviation)
 
     def _parts(self, xi: FloatArray, rpm: float) -> list[tuple[FrictionLaw, BoolArray]]:
         assert self.law.law.parts is not None
@@ -242,6 +351,52 @@ class FrictionBetweenSpeeds:
         return Change(abs(law.factor(path, settings) / unit - 1.0) if unit else 0.0, 0.0)
 
 
+class FrictionAtSpeed(NamedTuple):
+    """Friction at a speed on k parts of the path.
+
+    Attributes
+    ----------
+    rpm : speed [rpm]
+    law : (k,) number of the law in force, in the order in which the film grows
+    least, largest : (k,) bounds on |mu|
+    """
+
+    rpm: float
+    law: IntArray
+    least: FloatArray
+    largest: FloatArray
+
+    @property
+    def moves(self) -> BoolArray:
+        """Where mu changes along the path and is not 0, (k,): not at a bound of law II."""
+        return np.asarray((self.least > 0.0) & (self.largest > (1.0 + _AT_BOUND) * self.least))
+
+
+def _by_mean(change: Change, rise: float, clipped: float, reference: FrictionAtSpeed) -> FloatArray:
+    """Bound (k,) on what a law that goes with the mean of law II deviates from a rise of the whole of it.
+
+    The law is mu f, f - 1 = change of the mean over the mean. With m = rise/(f - 1) at the end, mu (f - 1) is
+    off m (f - 1) by |mu - m| |f - 1|. The mean changes by what law II rises times the share of the path on
+    which law II is not at a bound, so that m (f - 1) is off the rise by rise clipped/(1 - clipped) at most.
+    """
+    if not change.share > 0.0 or clipped >= 0.5:
+        return np.full(reference.law.size, np.inf)
+    m = rise / change.share
+    distance = np.maximum(np.abs(reference.largest - m), np.abs(reference.least - m))
+    return distance * change.share + rise * clipped / (1.0 - clipped)
+
+
+def _joined(intervals: Intervals) -> Intervals:
+    """Intervals that adjoin each other as one."""
+    joined: list[tuple[float, float]] = []
+    for low, high in intervals:
+        if joined and joined[-1][1] == low:
+            joined[-1] = joined[-1][0], high
+        else:
+            joined.append((low, high))
+    return tuple(joined)
+
+
 class Change(NamedTuple):
     """Bound on the change of |mu|: a share of |mu|, and a number."""
 
@@ -253,13 +408,24 @@ class Change(NamedTuple):
         return self.share * mu + self.shift
 
 
-def _sizes(fit: PathFunction, xi: FloatArray) -> FloatArray:
-    """Bounds on |mu| of a fit between positions (k+1,), by the moduli of the terms of its pieces."""
-    powers = np.arange(len(fit.coefficients))[::-1, None]
-    of_piece = (np.abs(fit.coefficients) * np.diff(fit.breaks) ** powers).sum(axis=0)
-    first = np.clip(np.searchsorted(fit.breaks, xi[:-1], side="right") - 1, 0, of_piece.size - 1)
-    last = np.clip(np.searchsorted(fit.breaks, xi[1:], side="left") - 1, 0, of_piece.size - 1)
-    return np.array([of_piece[a : max(a, b) + 1].max() for a, b in zip(first, last, strict=True)])
+def _ranges(fit: PathFunction, xi: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Bounds (k,) on |mu| of a fit between positions (k+1,) within its pieces: least and largest.
+
+    By the powers about the middle of each part, which synthetic division gives.
+    """
+    middle = 0.5 * (xi[1:] + xi[:-1])
+    half = 0.5 * np.diff(xi)
+    piece = np.clip(np.searchsorted(fit.breaks, middle, side="right") - 1, 0, fit.breaks.size - 2)
+    rows = fit.coefficients[:, piece].copy()  # highest power first
+    place = middle - fit.breaks[piece]
+    terms = np.abs(rows) * (np.abs(place) + half) ** np.arange(len(rows))[::-1, None]
+    rounding = 1e-12 * terms.sum(axis=0)
+    for last in range(len(rows), 0, -1):
+        for k in range(1, last):
+            rows[k] += place * rows[k - 1]
+    spread = (np.abs(rows[:-1]) * half ** np.arange(len(rows))[:0:-1, None]).sum(axis=0) + rounding
+    size = np.abs(rows[-1])
+    return np.maximum(size - spread, 0.0), size + spread
 
 
 def _rise(law_two: LawOverSpeed, low: float, high: float) -> float:

@@ -40,6 +40,8 @@ _PLACE = 16.0 * _U
 _SEARCH = 1e-14
 #: Breaks closer than this part of a base pitch may share one end of a segment.
 _MERGED = 1e-12
+#: Positions that are one break of mu, relative to the end of the path.
+_SAME_BREAK = 1e-11
 #: Degree of the polynomials in place of the factor on stiffness and of its root.
 _FACTOR_DEGREE = 8
 #: Nodes and largest length of the steps of tables: with 9 a step has all of a law's polynomial.
@@ -135,6 +137,21 @@ class _RowBounds(NamedTuple):
     arm_slope: float
 
 
+#: Ends of intervals of the path [m].
+Intervals = tuple[tuple[float, float], ...]
+
+
+def _inside(xi: FloatArray, breaks: FloatArray, intervals: Intervals | None) -> FloatArray:
+    """1 within any of some intervals between breaks, else 0; None: 1 everywhere."""
+    if intervals is None:
+        return np.ones_like(xi)
+    ends = np.array(intervals).reshape(-1, 2)
+    near = np.abs(ends[:, :, None] - breaks).min(axis=2, initial=np.inf)
+    if (near > _SAME_BREAK * breaks[-1]).any():
+        raise NumericalError("the intervals on which a level of friction acts do not end at breaks of mu.")
+    return np.asarray(((xi[..., None] > ends[:, 0]) & (xi[..., None] < ends[:, 1])).any(axis=-1), dtype=float)
+
+
 class _Factors(NamedTuple):
     """Polynomials q and s in place of the factor f on stiffnesses and of the root of f, on k pieces.
 
@@ -156,7 +173,8 @@ class MeshGains:
     The gains come in pairs: feedback of the deflection, feedback of the rate of the deflection. Without
     ``levels`` one pair holds normal loads and friction. With levels of friction, the first of which is zero,
     the first pair holds normal loads, the second pair mu less the sum of the levels, and each further pair
-    one level. ``factor`` is on the variation of the total stiffness about its mean. ``edges`` (S+1,) are the
+    one level. ``acts`` are the intervals [m] of the path on which levels act, between breaks of mu; None:
+    everywhere. ``factor`` is on the variation of the total stiffness about its mean. ``edges`` (S+1,) are the
     ends of the segments as parts of the period.
     """
 
@@ -167,6 +185,7 @@ class MeshGains:
         misfit: FloatArray,
         factor: float,
         levels: Sequence[float],
+        acts: Intervals | None = None,
     ) -> None:
         cycle = system.cycle
         g = system.cycle.geometry
@@ -182,8 +201,9 @@ class MeshGains:
         self.edges = cycle.breaks / cycle.period
         middle = cycle.offsets[:, None] + g.base_pitch * 0.5 * (self.edges[:-1] + self.edges[1:])
         self.touch = (middle >= cycle.start) & (middle <= cycle.end)
-        self.side = np.sign(middle - g.L_XP)
         e = cycle.elements
+        #: Sign of the levels: that of the sliding, 0 where the levels do not act.
+        self.side = np.sign(middle - g.L_XP) * _inside(middle, e.friction.breaks, acts)
         self.k, self.c, self.mu = (
             _Law.of(law, misfit, middle, self.touch, g.base_pitch)
             for law, misfit in ((e.stiffness, None), (e.damping, None), (e.friction, misfit))

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import get_args
+from typing import NamedTuple, get_args
 
 import numpy as np
 from scipy.linalg import block_diag, eigh
@@ -21,7 +21,7 @@ from floquet.engine.neutral import separate_from_mirror_images
 from floquet.engine.propagators.one_step import Propagator
 from floquet.engine.system import PeriodicSystem
 from floquet.gear.axes import GearVariation
-from floquet.gear.gains import MeshGains, OwnGains, own_tables
+from floquet.gear.gains import Intervals, MeshGains, OwnGains, own_tables
 from floquet.rank_one.batch import FastMonodromy, fast_monodromies, fast_multipliers
 from floquet.rank_one.piecewise import fit_pieces
 from floquet.rank_one.system import Gains, RankOneSystem
@@ -85,8 +85,8 @@ def stays_symmetric(feedback: Feedback, supports: AnySupports, friction: BoolArr
     """Whether the parameters state that without mesh damping M z'' + K(t) z = 0 with symmetric K(t), (k,).
 
     With one coordinate every K(t) is symmetric, also that of friction. Else this is so without friction, on
-    springs without damping and without tip corners, whose force is not normal to the flanks: K + k(t) v v^T.
-    On shafts modes are rounded: False.
+    springs without damping: K + k(t) v v^T. There the force of a tip corner, which is not normal to the
+    flanks, pushes the gears apart off the line of action only. On shafts modes are rounded: False.
 
     Parameters
     ----------
@@ -97,28 +97,58 @@ def stays_symmetric(feedback: Feedback, supports: AnySupports, friction: BoolArr
     system = feedback.system
     m = system.deflection.size
     damped = bool(system.constant[m:, m:].any())
-    tilt = system.cycle.elements.tilt
-    on_line = tilt is None or not tilt.coefficients.any()
-    return np.asarray(~friction & (supports == "springs" and not damped and on_line))
+    return np.asarray(~friction & (supports == "springs" and not damped and not system.per_apart.any()))
+
+
+def corners_push_apart(feedback: Feedback) -> bool:
+    """Whether the mesh drives motions off the line of action without friction: by tip corners."""
+    tilt = feedback.system.cycle.elements.tilt
+    return tilt is not None and bool(tilt.coefficients.any())
+
+
+class FeedbackMultipliers(NamedTuple):
+    """Multipliers of the feedback block at k points.
+
+    Attributes
+    ----------
+    values, errors : (k, 2m) multipliers with proven bounds
+    symplectic : (k,) whether the block is symplectic
+    """
+
+    values: ComplexArray
+    errors: FloatArray
+    symplectic: BoolArray
 
 
 def stays_bounded(
-    values: ComplexArray, errors: FloatArray, symplectic: BoolArray, off_line: OffLineOfAction
+    block: FeedbackMultipliers, off_line: OffLineOfAction, periods: FloatArray, *, driven: bool
 ) -> BoolArray:
-    """Whether motions neither all die out nor grow (k,): proven, see docs/theory/floquet.md.
+    """Whether motions neither all die out nor grow (k,): PROVEN, see docs/theory/floquet.md.
 
     Parameters
     ----------
-    values, errors : (k, 2m) multipliers of the feedback block with proven bounds
-    symplectic : (k,) whether the feedback block is symplectic
-    off_line : motions that the feedback block does not read; without friction they have no input either
+    block : multipliers of the feedback block, which does not read motions off the line of action
+    off_line : motions off the line of action
+    periods : (k,) [s]
+    driven : whether the mesh drives motions off the line of action without friction, `corners_push_apart`
     """
-    on_circle = symplectic & separate_from_mirror_images(values, errors)
-    inside = (np.abs(values) + errors < 1.0).all(axis=1)
+    on_circle = block.symplectic & separate_from_mirror_images(block.values, block.errors)
+    inside = (np.abs(block.values) + block.errors < 1.0).all(axis=1)
     exponents = off_line.exponents
     undamped = (exponents.real == 0.0) & (exponents.imag != 0.0)
     fade = exponents.real + off_line.errors < 0.0
+    if driven:  # an undamped motion grows where it has a multiplier of the block
+        on_circle &= _apart(block, undamped, *off_line.multipliers(periods))
     return np.asarray((undamped | fade).all() & (on_circle | (inside & undamped.any())))
+
+
+def _apart(
+    block: FeedbackMultipliers, chosen: BoolArray, values: ComplexArray, errors: FloatArray
+) -> BoolArray:
+    """Whether the disks of the chosen multipliers (k, n) of ``values`` meet no disk of the block, (k,)."""
+    distance = np.abs(block.values[:, :, None] - values[:, None, chosen])
+    reach = (block.errors[:, :, None] + errors[:, None, chosen]) * (1.0 + 1e-9) + 64.0 * _U
+    return np.asarray((distance > reach).all(axis=(1, 2)))
 
 
 def _leading_modes(system: LTVSystem, misfit: FloatArray) -> Feedback:
@@ -216,8 +246,14 @@ def gear_block(
     return fitted_block(feedback_system(variation), variation.stiffness_variation, rtol, [])
 
 
-def fitted_block(feedback: Feedback, factor: float, rtol: float, levels: Sequence[float]) -> RankOneSystem:
-    """Feedback with its gains as polynomials; ``factor`` and ``levels`` as in `MeshGains`.
+def fitted_block(
+    feedback: Feedback,
+    factor: float,
+    rtol: float,
+    levels: Sequence[float],
+    acts: Intervals | None = None,
+) -> RankOneSystem:
+    """Feedback with its gains as polynomials; ``factor``, ``levels`` and ``acts`` as in `MeshGains`.
 
     With levels, the part of the gains that is proportional to mu is ``varied``: a factor on mu then needs no
     new fit. With two levels mu may also rise and fall as a whole.
@@ -226,7 +262,7 @@ def fitted_block(feedback: Feedback, factor: float, rtol: float, levels: Sequenc
     metric = feedback.metric
     m = feedback.metric.size
     turning = system.pair.geometry.omega_pinion * system.gyroscopic
-    mesh = MeshGains(system, metric, feedback.misfit, factor, levels)
+    mesh = MeshGains(system, metric, feedback.misfit, factor, levels, acts)
     fits = fit_pieces(mesh, mesh.edges, metric, rtol=rtol)
     jumps = np.zeros((fits.phases.size, mesh.jumps.shape[0]))
     jumps[fits.edge_indices] = mesh.jumps.T
@@ -415,14 +451,11 @@ def gear_pair_multipliers(
     spectrum: Spectrum
     if isinstance(method, str) and method == "taylor":
         spectrum = _proven(feedback, variation, rtol)
-        bounded = bool(
-            stays_bounded(
-                spectrum.multipliers[None],
-                spectrum.multiplier_errors[None],
-                np.array([spectrum.symplectic]),
-                off_line,
-            )[0]
+        block = FeedbackMultipliers(
+            spectrum.multipliers[None], spectrum.multiplier_errors[None], np.array([spectrum.symplectic])
         )
+        driven = corners_push_apart(feedback)
+        bounded = bool(stays_bounded(block, off_line, np.array([spectrum.period]), driven=driven)[0])
     else:
         spectrum = monodromy(gear_pair_system(variation, "mesh"), rtol, method=method)
         bounded = False

@@ -6,30 +6,21 @@ Sources: docs/theory/proven_bounds.md, "The nearest unstable speed".
 from __future__ import annotations
 
 import math
-import warnings
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from floquet.gear.axes import GEAR_AXES, GearVariation, checked_range, operating_rpm, speed_range
-from floquet.gear.friction_between_speeds import FrictionBetweenSpeeds, SpeedPatch
-from floquet.gear.gains import friction_reach
-from floquet.gear.multipliers import OffLineOfAction, feedback_system, fitted_block
-from floquet.rank_one.boxes import GainDeviation, slow_period
-from floquet.rank_one.kernel_input import packed
-from floquet.rank_one.kernels.gains import Problem
-from floquet.rank_one.period_search import Effort, PatchSystem, PeriodVerdicts, no_verdicts, proven_periods
-from floquet.rank_one.system import RankOneSystem
-from lumped.errors import LawRangeWarning, refuse
+from floquet.gear.axes import GearVariation, checked_range, operating_rpm, speed_range
+from floquet.gear.systems_between_speeds import SystemsBetweenSpeeds
+from floquet.rank_one.period_search import Effort, PeriodVerdicts, no_verdicts, proven_periods
+from lumped.errors import refuse
 from lumped.model.periodic_system import Supports
 from lumped.schema.files import AnyPair
 from lumped.typing import FloatArray, IntArray
 
-_RTOL = 1e-12  # of the polynomials of the gains
 #: Some tenths of a second; see docs/verification/floquet.md.
 _EFFORT = Effort(vibrations=1500.0, intervals=2000, patches=100)
-_WORK_OF_FIT = 4  # patches that take as long as a fit of the gains
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,7 +140,7 @@ def nearest_unstable_speed(
     if not low <= rpm <= high:
         allowed = f"a range with the operating speed, {rpm:g} rpm"
         raise refuse("speed_rpm", f"({low:g}, {high:g})", allowed, "Give a wider range.")
-    systems = _Systems(variation)
+    systems = SystemsBetweenSpeeds(variation)
     turns = 60.0 / variation.pair.pinion.teeth  # period [s] times speed [rpm]
     verdicts = no_verdicts()
     # Motions that the mesh does not couple must die out: else no speed is stable but for the neutral ones.
@@ -165,62 +156,3 @@ def _over_speed(
     """Verdicts of intervals of speed, which increases where the period decreases."""
     low, high = turns / verdicts.high[::-1], turns / verdicts.low[::-1]
     return StabilityOverSpeed(rpm, speeds, low, high, verdicts.verdict[::-1])
-
-
-class _Systems:
-    """`SystemOverPeriod` of a gear pair: one fit of the gains for each reference speed of friction."""
-
-    def __init__(self, variation: GearVariation) -> None:
-        self.variation = variation
-        self.friction = FrictionBetweenSpeeds(variation)
-        self.widest = self.friction.widest
-        self._fits: dict[float, tuple[RankOneSystem, Problem]] = {}
-        feedback = feedback_system(variation)
-        off_line = OffLineOfAction.of(feedback)
-        self.separate_fade = bool((off_line.exponents.real + off_line.errors < 0.0).all())
-        self.pitch = feedback.system.cycle.geometry.base_pitch
-        self.period_times_rpm = feedback.system.period * operating_rpm(variation.pair)
-        self.reach = friction_reach(feedback.system, feedback.metric)
-
-    def _fit(self, patch: SpeedPatch) -> tuple[RankOneSystem, Problem]:
-        """The feedback block at the reference speed of a patch, once for each reference speed."""
-        if patch.reference not in self._fits:
-            levels = [] if self.friction.none else [0.0]
-            levels += [] if patch.level is None else [patch.level]
-            with (
-                warnings.catch_warnings()
-            ):  # a result at the operating speed tells where a law leaves its range
-                warnings.simplefilter("ignore", LawRangeWarning)
-                at_reference = GEAR_AXES["speed_rpm"].apply(self.variation, patch.reference)
-                system = fitted_block(feedback_system(at_reference), 1.0, _RTOL, levels)
-            self._fits[patch.reference] = system, packed(system)
-        return self._fits[patch.reference]
-
-    def __call__(self, shortest: float, longest: float) -> PatchSystem | None:
-        """See `SystemOverPeriod`."""
-        turns = self.period_times_rpm
-        patch = self.friction.patch(turns / longest, turns / shortest)
-        if patch is None:
-            return None
-        work = 1 if patch.reference in self._fits else _WORK_OF_FIT
-        system, problem = self._fit(patch)
-
-        def factors(T: FloatArray) -> FloatArray:
-            return patch.factors(turns / T)[:, : len(system.varied)]
-
-        return PatchSystem(system, problem, factors, self._deviation(patch), work)
-
-    def _deviation(self, patch: SpeedPatch) -> GainDeviation:
-        """Integrals over the phase of what mu deviates by, times the gains by a unit of mu."""
-        share = patch.deviation / self.pitch
-        return GainDeviation(share * self.reach.w, share * self.reach.wd)
-
-    def slow_period(self, shortest: float, longest: float) -> float:
-        """Period [s] from which on all motions of the range are stable; inf: no such period is known."""
-        turns = self.period_times_rpm
-        patch = self.friction.bounds(turns / longest, turns / shortest)
-        if patch is None:
-            return math.inf
-        system, _ = self._fit(patch)
-        factors = patch.factors(np.array([turns / longest, turns / shortest]))[:, : len(system.varied)]
-        return slow_period(system, np.ones(2), factors, self._deviation(patch))

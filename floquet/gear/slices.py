@@ -21,9 +21,19 @@ from floquet.gear.axes import (
     operating_rpm,
     vary,
 )
+from floquet.gear.cells_of_moving_friction import (
+    CellParts,
+    CellsOfMovingFriction,
+    fades,
+    finer,
+    moving_friction_is_bounded,
+    verdicts_of_cells,
+)
 from floquet.gear.multipliers import (
     Feedback,
+    FeedbackMultipliers,
     OffLineOfAction,
+    corners_push_apart,
     feedback_system,
     fitted_block,
     stays_bounded,
@@ -34,7 +44,8 @@ from floquet.rank_one.boxes import proven_cells
 from floquet.rank_one.system import RankOneSystem
 from lumped.typing import FloatArray, IntArray, Progress
 
-_FEWEST_PARTS = (800, 200)  # of speed and damping of a chart with proven cells; a part is proven as a whole
+#: Of a chart with proven cells; a part is proven as a whole.
+_FEWEST_PARTS = CellParts(800, 200)
 
 
 class SlicePart(NamedTuple):
@@ -140,21 +151,26 @@ class ChartSlice:
         return self._blocks[k]
 
     def cells(self, rtol: float, progress: Progress | None) -> IntArray:
-        """Verdicts (N-1, M-1) of the cells between neighbouring speeds and damping ratios, `proven_cells`."""
+        """Verdicts (N-1, M-1) of the cells between neighbouring speeds and damping ratios, `proven_cells`.
+
+        Between speeds of one family of friction, between which factors are smooth, the gains are known
+        exactly. Between other speeds breaks of the gains move with friction, and a bound on the deviation of
+        the gains counts, see `CellsOfMovingFriction`.
+        """
         order = np.argsort(self.speeds)
         speeds = self.speeds[order]
         damping = np.sort(self.damping)
         verdict = np.zeros((speeds.size - 1, damping.size - 1), dtype=np.intp)
+        smooth = np.zeros(speeds.size - 1, dtype=bool)
+        # Motions that the mesh does not couple must die out, too: else only instability can be proven.
+        separate_fade = fades(self._block(0, rtol).separate)
+        fewest = _FEWEST_PARTS if separate_fade else CellParts(1, 1)
+        parts = CellParts(*(-(-n // (v.size - 1)) for n, v in zip(fewest, (speeds, damping), strict=True)))
+        ratios = finer(damping, parts.damping)
         family_of_speed = self._rows[0][order]
         for i, j in self._smooth_runs(speeds, family_of_speed):
             family = self.families[family_of_speed[i]]
             block = self._block(int(family_of_speed[i]), rtol)
-            # Motions that the mesh does not couple must die out, too: else only instability can be proven.
-            exponents = block.separate.exponents
-            separate_fade = bool((exponents.real + block.separate.errors < 0.0).all())
-            fewest_speeds, fewest_ratios = _FEWEST_PARTS if separate_fade else (1, 1)
-            rpm, speed_parts = _finer(speeds[i:j], fewest_speeds)
-            ratios, damping_parts = _finer(damping, fewest_ratios)
 
             def factors(
                 T: FloatArray, block: _FamilyBlock = block, family: FrictionFamily = family
@@ -162,14 +178,14 @@ class ChartSlice:
                 result = family.factors_at(block.period_times_rpm / T)
                 return None if result is None else result[:, : block.levels]
 
-            periods = block.period_times_rpm / rpm[::-1]
+            periods = block.period_times_rpm / finer(speeds[i:j], parts.speed)[::-1]
             result = proven_cells(block.system, periods, ratios, factors, progress)[::-1]
-            parts = result.reshape(j - i - 1, speed_parts, damping.size - 1, damping_parts)
-            lowest = parts.min(axis=(1, 3))
-            highest = parts.max(axis=(1, 3))
-            decided = lowest if separate_fade else np.minimum(lowest, 0)
-            verdict[i : j - 1] = np.where(lowest == highest, decided, 0)
-        return verdict
+            verdict[i : j - 1] = verdicts_of_cells(result, parts)
+            smooth[i : j - 1] = True
+        if not smooth.all() and moving_friction_is_bounded(self.reference):
+            moving = CellsOfMovingFriction(self.reference, ratios, parts)
+            verdict[~smooth] = moving.verdicts(speeds, np.flatnonzero(~smooth))
+        return verdict if separate_fade else np.minimum(verdict, 0)
 
     def _smooth_runs(self, speeds: FloatArray, family_of_speed: IntArray) -> Iterator[tuple[int, int]]:
         """First index and end of runs of two or more neighbouring speeds in which factors are smooth."""
@@ -206,7 +222,9 @@ class ChartSlice:
             undamped = damping[members] * self.reference.pair.mesh.damping_ratio == 0.0
             rubs = factors[:, : block.levels].any(axis=1)
             symplectic = undamped & stays_symmetric(block.feedback, self.reference.supports, rubs)
-            neutral = stays_bounded(result.multipliers, result.errors, symplectic, block.separate)
+            feedback = FeedbackMultipliers(result.multipliers, result.errors, symplectic)
+            driven = corners_push_apart(block.feedback)
+            neutral = stays_bounded(feedback, block.separate, T, driven=driven)
             coupled = result.multipliers.shape[1]
             yield node_results(places[members], values, errors, True, wanted, coupled, neutral)
 
@@ -228,14 +246,3 @@ def solve_slice(
 ) -> list[NodeResults]:
     """Results of some points of a slice, see `ChartSlice`."""
     return list(ChartSlice(variation, grid, inner, point).solve(places, indices, wanted, rtol))
-
-
-def _finer(values: FloatArray, least: int) -> tuple[FloatArray, int]:
-    """Cut each interval of increasing values into equal parts, so that there are at least ``least`` parts.
-
-    Returns the finer values, and the number of parts of each interval.
-    """
-    parts = max(1, -(-least // (values.size - 1)))
-    share = np.arange(parts) / parts
-    finer = values[:-1, None] * (1.0 - share) + values[1:, None] * share
-    return np.append(finer.ravel(), values[-1]), parts

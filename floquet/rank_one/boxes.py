@@ -13,7 +13,7 @@ import math
 from bisect import bisect_left
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from itertools import product
+from itertools import pairwise, product
 from typing import NamedTuple
 
 import numpy as np
@@ -36,6 +36,10 @@ _RADII = np.geomspace(1.5, 200.0, 40)  # sums of the semi-axes of the ellipses o
 _ANGLE = 0.5  # of half a step in `largest_flow`
 _CELLS = 4  # parts of a piece of the gains whose frozen systems are taken
 _ROWS = 8  # rows of cells for which one Lyapunov function is sought
+_STRIP = 0.1  # integral of the change of A over a strip of a patch, if there are no more than so many strips
+_STRIPS = 24
+_CLOSE = 1.1  # ratio of periods below which all of them are likely to be long together
+_HOPELESS = 1e9  # error of a patch in which nothing is decided
 _BATCH = 512  # boxes that are decided together
 
 
@@ -66,6 +70,8 @@ def proven_cells(
     damping: FloatArray,
     factors: Factors,
     progress: Progress | None = None,
+    *,
+    deviation: GainDeviation | None = None,
 ) -> IntArray:
     """Verdict (N, M) of each cell of a grid: 1 stable, -1 unstable everywhere in it, 0 not proven.
 
@@ -73,17 +79,29 @@ def proven_cells(
     ----------
     periods, damping : (N+1,) [s] and (M+1,), increasing: edges of the cells; damping is the factor on wd
     factors : on the varied gains, powers of the period or linear in its logarithm, else nothing is proven
+    deviation : of the gains that are meant from those of the system and the factors; None: zero
     """
     problem = packed(system)
     rows = damping.size - 1
     verdict = np.zeros((periods.size - 1, rows), dtype=np.intp)
-    ends = _scaled(np.geomspace(periods[0], periods[-1], _NODES.damping), factors)
-    if ends is None:
+    factor_values = _scaled(np.geomspace(periods[0], periods[-1], _NODES.damping), factors)
+    if factor_values is None:
         return verdict
-    ends = ends[[0, -1]]
-    for j in range(0, rows, _ROWS):
-        end_values = damping[[j, min(j + _ROWS, rows)]]
-        verdict[np.searchsorted(periods, slow_period(system, end_values, ends)) :, j : j + _ROWS] = 1
+    end_factors = factor_values[[0, -1]]
+
+    def by_slow_variation(low: int, high: int) -> bool:
+        """Prove rows of cells for long periods; whether some cells are proven."""
+        leaf = high - low <= _ROWS
+        if leaf or periods[-1] < _CLOSE * periods[0]:
+            slow = slow_period(system, damping[[low, high]], end_factors, deviation)
+            if leaf or slow <= periods[0]:
+                verdict[np.searchsorted(periods, slow) :, low:high] = 1
+                return bool(slow <= periods[-1])
+        middle = (low + high) // 2
+        # With less damping hardly more is proven.
+        return by_slow_variation(middle, high) and by_slow_variation(low, middle)
+
+    by_slow_variation(0, rows)
     end = int(np.flatnonzero((verdict == 0).any(axis=1)).max(initial=-1)) + 1
     i = 0
     growth = 2.0
@@ -94,6 +112,7 @@ def proven_cells(
             return 1e3 * size.error(periods[[i, k]], damping[[0, 0]])
 
         b = _last(i, end, wide)
+        along_period = _fewest_nodes(size, periods[[i, b]], damping[[0, 0]])
         c = 0
         while c < rows:
 
@@ -104,9 +123,18 @@ def proven_cells(
             patch = None
             block_verdict = verdict[i:b, c:d]
             if not block_verdict.all():
-                patch = FlowPolynomial.of(system, problem, periods[[i, b]], damping[[c, d]], factors)
+                patch = FlowPolynomial.of(
+                    system,
+                    problem,
+                    periods[[i, b]],
+                    damping[[c, d]],
+                    factors,
+                    NodeCounts(along_period, _NODES.damping),
+                    deviation=deviation,
+                )
             if patch is not None:
                 growth = min(1.1 * patch.growth, 10.0)
+            if patch is not None and patch.error < _HOPELESS:
                 result = _subdivided(patch, periods[i : b + 1], damping[c : d + 1])
                 block_verdict[block_verdict == 0] = result[block_verdict == 0]
             c = d
@@ -114,6 +142,14 @@ def proven_cells(
         if progress is not None:
             progress(i / end)
     return verdict
+
+
+def _fewest_nodes(size: PatchSize, periods: FloatArray, damping: FloatArray) -> int:
+    """Nodes along the period that are enough for a small error along it: few for a narrow patch."""
+    for count in range(_TERMS[0], _NODES.period, 4):
+        if 1e3 * size.error(periods, damping, nodes=NodeCounts(count, 1)) <= _TOLERANCE:
+            return count
+    return _NODES.period
 
 
 def _last(first: int, end: int, error: Callable[[int], float]) -> int:
@@ -259,21 +295,31 @@ class PatchSize:
         return total * (1.0 + 1e-9)
 
     def deviation(
-        self, T: FloatArray, damping: FloatArray, factor_change: FloatArray, deviation: GainDeviation
+        self,
+        T: FloatArray,
+        damping: FloatArray,
+        factor_change: FloatArray,
+        deviation: GainDeviation,
+        flow: float | None = None,
     ) -> float:
         """Bound on the change of M everywhere in a patch by gains that deviate, wherever in the cycle.
 
-        Flows within the cycle are at most g = growth exp(growth d) in the patch. Let e be the integral of the
-        norm of the change of T A over the cycle. Then M changes by g (exp(g e) - 1) at most (Gronwall).
+        Flows within the cycle are at most g = ``flow`` in the patch, by default growth exp(growth d). Let e
+        be the integral of the norm of the change of T A over the cycle. Then M changes by g (exp(g e) - 1)
+        at most (Gronwall).
         """
-        one = np.ones(1)
-        d = float(
-            self.change(T, damping, one, one, factor_change[:, :1])[0]
-        )  # the ellipse contains the patch
-        flow = self.growth * math.exp(min(self.growth * d, 700.0))
+        if flow is None:
+            flow = self.flow(T, damping, factor_change, self.growth)
         norms = self.norms[0], damping.max() * self.norms[1]
         e = float(T.max()) * (deviation.w * norms[0] + deviation.wd * norms[1])
         return float(flow * np.expm1(min(flow * e, 700.0))) * (1.0 + 1e-9)
+
+    def flow(self, T: FloatArray, damping: FloatArray, factor_change: FloatArray, growth: float) -> float:
+        """Bound on all flows within a cycle in a patch, of which ``growth`` is a bound in the middle."""
+        one = np.ones(1)
+        # The ellipse contains the patch.
+        d = float(self.change(T, damping, one, one, factor_change[:, :1])[0])
+        return growth * math.exp(min(growth * d, 700.0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -334,26 +380,62 @@ class FlowPolynomial:
         )
         matrices = flow.matrices.reshape(x.size, y.size, *flow.matrices.shape[1:])
         gains = np.append(1.0, factor_values[-1])
-        largest, wrong = largest_flow(problem, Point(own(gains), zeta, t), Limits(1e-12, _ANGLE))
         size = PatchSize(problem, math.inf, gains)
-        # Norms grow within a step, half of which has the angle, by the symmetric part of A alone.
-        norms = np.array([np.linalg.norm(problem.v / problem.omega), zeta * np.linalg.norm(problem.v)])
-        rates = np.tensordot(np.abs(gains), problem.sizes + problem.fit_error, 1) * norms
-        growth_rates = rates @ [0.5, 1.0] + problem.drive + problem.noise + problem.gyroscopic_drive / t
-        within = math.exp(
-            4.0 * _ANGLE * float((growth_rates / (size.constant + rates.sum(axis=1))).max()) * (1.0 + 1e-6)
-        )
-        if largest * wrong < 0.5:
-            size.growth = within * largest / (1.0 - largest * wrong)
+        size.growth = growth_at(problem, size, Point(own(gains), zeta, t))
         factor_change = _factor_change(T / t, factor_values)
         error = size.error(periods, damping, factor_change, nodes)
         if deviation is not None:
-            error += size.deviation(periods, damping, factor_change, deviation)
+            largest = _flow_in_patch(
+                problem, size, Point(own(gains), zeta, t), periods, damping, factor_change
+            )
+            error += size.deviation(periods, damping, factor_change, deviation, largest)
         error += (1.0 + 2.0 / math.pi * math.log(x.size)) ** 2 * float(flow.errors.max())  # Lebesgue's
         along_period = (to_T @ matrices.reshape(x.size, -1)).reshape(matrices.shape)
         coefficients = to_z @ along_period.reshape(x.size, y.size, -1)
         coefficients = coefficients.reshape(matrices.shape)
         return cls(coefficients, error if math.isfinite(error) else math.inf, size.growth)
+
+
+def growth_at(problem: Problem, size: PatchSize, point: Point) -> float:
+    """Bound on all flows within a cycle at one point; inf: none is known."""
+    largest, wrong = largest_flow(problem, point, Limits(1e-12, _ANGLE))
+    if not largest * wrong < 0.5:
+        return math.inf
+    # Norms grow within a step, half of which has the angle, by the symmetric part of A alone.
+    zeta = abs(point.zeta)
+    norms = np.array([np.linalg.norm(problem.v / problem.omega), zeta * np.linalg.norm(problem.v)])
+    rates = np.tensordot(np.abs(point.weights), problem.sizes + problem.fit_error, 1) * norms
+    growth_rates = (
+        rates @ [0.5, 1.0] + problem.drive + problem.noise + problem.gyroscopic_drive / point.period
+    )
+    within = math.exp(
+        4.0 * _ANGLE * float((growth_rates / (size.constant + rates.sum(axis=1))).max()) * (1.0 + 1e-6)
+    )
+    return within * largest / (1.0 - largest * wrong)
+
+
+def _flow_in_patch(
+    problem: Problem,
+    size: PatchSize,
+    middle: Point,
+    periods: FloatArray,
+    damping: FloatArray,
+    factor_change: FloatArray,
+) -> float:
+    """PROVEN bound on all flows within a cycle everywhere in a patch: from the middles of strips of damping.
+
+    Over a whole patch Gronwall's inequality would allow for flows that grow where damping makes them decay.
+    """
+    one = np.ones(1)
+    d = float(size.change(periods, damping, one, one, factor_change[:, :1])[0])
+    count = int(np.clip(math.ceil(d / _STRIP), 1, _STRIPS)) if damping[1] > damping[0] else 1
+    edges = np.linspace(damping[0], damping[1], count + 1)
+    largest = 0.0
+    for ends in pairwise(edges):
+        strip = np.array(ends)
+        growth = growth_at(problem, size, middle._replace(zeta=float(strip.mean())))
+        largest = max(largest, size.flow(periods, strip, factor_change, growth))
+    return largest * (1.0 + 1e-9)
 
 
 def _scaled(T: FloatArray, factors: Factors) -> FloatArray | None:

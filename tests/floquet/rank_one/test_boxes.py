@@ -11,7 +11,14 @@ from floquet.gear.axes import GearVariation
 from floquet.gear.multipliers import feedback_system, fitted_block
 from floquet.rank_one import boxes
 from floquet.rank_one.batch import fast_monodromies
-from floquet.rank_one.boxes import FlowPolynomial, bounded_entries, decided, proven_cells, slow_period
+from floquet.rank_one.boxes import (
+    FlowPolynomial,
+    GainDeviation,
+    bounded_entries,
+    decided,
+    proven_cells,
+    slow_period,
+)
 from floquet.rank_one.kernel_input import packed
 from floquet.rank_one.system import Gains
 from lumped import load_gear_pair
@@ -378,6 +385,25 @@ def test_the_error_of_a_patch_is_that_of_the_theorem() -> None:
             best = min(best, kappa * d + np.log(4.0 * kappa / (r - 1.0)) + (1 - nodes) * np.log(r))
         total += lebesgue * np.exp(best)
     assert size.error(T, zeta) == pytest.approx(total, rel=1e-8, abs=0.0)
+
+
+def test_gains_that_deviate_leave_cells_unproven() -> None:
+    """The more they deviate the fewer cells are proven; no verdict changes its sign."""
+    system, _ = meissner()
+    T, zeta = np.linspace(7.0, 7.1, 5), np.linspace(0.02, 0.1, 9)
+    exact = proven_cells(system, T, zeta, no_factors)
+    counts = []
+    for strength in (1e-6, 1e-3, 1e-2, 1.0):
+        verdict = proven_cells(system, T, zeta, no_factors, deviation=GainDeviation(strength, 0.0))
+        assert ((verdict == 0) | (verdict == exact)).all()
+        counts.append(int((verdict != 0).sum()))
+    assert counts[0] > 0.8 * (exact != 0).sum()
+    assert counts == sorted(counts, reverse=True)
+    assert counts[2] < counts[0]
+    assert counts[-1] == 0
+    long, high = np.linspace(200.0, 201.0, 3), np.array([0.3, 0.4])  # slow variation
+    assert (proven_cells(system, long, high, no_factors) == 1).all()
+    assert not proven_cells(system, long, high, no_factors, deviation=GainDeviation(10.0, 0.0)).any()
 
 
 def test_the_slow_period_is_that_of_its_formula() -> None:

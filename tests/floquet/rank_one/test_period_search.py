@@ -6,8 +6,18 @@ import numpy as np
 import pytest
 
 from floquet.rank_one.batch import fast_monodromies
-from floquet.rank_one.boxes import FlowPolynomial, GainDeviation, NodeCounts, slow_period
+from floquet.rank_one.boxes import (
+    FlowPolynomial,
+    GainDeviation,
+    NodeCounts,
+    PatchSize,
+    _flow_in_patch,
+    growth_at,
+    slow_period,
+)
 from floquet.rank_one.kernel_input import packed
+from floquet.rank_one.kernels.gains import Limits, Point
+from floquet.rank_one.kernels.taylor import largest_flow
 from floquet.rank_one.period_search import Effort, PatchSystem, PeriodVerdicts, proven_periods
 from floquet.rank_one.system import Gains, RankOneSystem
 from tests.floquet.rank_one.test_boxes import mathieu, meissner, no_factors
@@ -156,6 +166,33 @@ def test_gains_that_deviate_change_the_matrix_by_no_more_than_the_bound(where: f
             assert apart > bound / 40.0
     slow = [slow_period(system, np.ones(2), np.empty((2, 0)), one) for one in (None, deviation)]
     assert slow[0] < slow[1]
+
+
+@pytest.mark.parametrize(
+    ("T", "damping"), [((2.0, 12.0), (-0.9, -0.4)), ((6.0, 6.1), (0.01, 0.3)), ((6.0, 6.1), (0.2, 0.2))]
+)
+def test_flows_in_a_patch_are_bounded_and_hardly_more_than_they_are(T, damping) -> None:
+    """With negative damping they grow to the corner of the patch; with damping they stay near one."""
+    system, _ = meissner()
+    problem = packed(system)
+    ends, ratios = np.array(T), np.array(damping)
+    size = PatchSize(problem, growth_at(problem, PatchSize(problem, 1.0), at(ends.mean(), ratios.mean())))
+    no_change = np.zeros((1, 40))
+    bound = _flow_in_patch(problem, size, at(ends.mean(), ratios.mean()), ends, ratios, no_change)
+    largest = max(
+        largest_flow(problem, at(period, zeta), Limits(1e-12, 0.5))[0]
+        for period in np.linspace(*ends, 5)
+        for zeta in np.linspace(*ratios, 7)
+    )
+    assert largest <= bound
+    assert bound < 3.0 * largest or ratios[0] < 0.0
+    if ratios[1] > ratios[0] > 0.0:  # Gronwall from the middle alone
+        assert size.flow(ends, ratios, no_change, size.growth) > 5.0 * bound
+
+
+def at(period: float, zeta: float) -> Point:
+    """A point of a system without varied gains."""
+    return Point(np.ones(1), float(zeta), float(period))
 
 
 def test_a_patch_is_narrowed_where_its_gains_deviate_more_than_at_its_front() -> None:
