@@ -376,7 +376,8 @@ class Shooting:
         angle = fastest_frequency(system) * system.period
         outputs = self.samples * math.ceil(angle / (_OUTPUT_ANGLE * self.samples))
         tables = momentary_tables(self.laws, system, 1.0 / steps_of(system), outputs)
-        states = self.run(unknowns, MomentaryRuns(self.pair, system, tables), rate=rate)[1].states
+        runs = MomentaryRuns(self.pair, system, tables)
+        states = self.run(unknowns, runs, rate=rate, recorded=self.cycles)[1].states
         z, rates = system.gear_motion(states)
         values = {"dte": z @ system.structure.deflection, "dte_dot": rates @ system.structure.deflection}
         for number, name in enumerate(COORDINATES):
