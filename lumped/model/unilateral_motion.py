@@ -373,17 +373,11 @@ class Shooting:
         system = self.system
         if resolves(system, self.samples):
             return {}
-        angle = fastest_frequency(system) * system.period
-        outputs = self.samples * math.ceil(angle / (_OUTPUT_ANGLE * self.samples))
+        outputs = _resolving_outputs(system, self.samples)
         tables = momentary_tables(self.laws, system, 1.0 / steps_of(system), outputs)
         runs = MomentaryRuns(self.pair, system, tables)
         states = self.run(unknowns, runs, rate=rate, recorded=self.cycles)[1].states
-        z, rates = system.gear_motion(states)
-        values = {"dte": z @ system.structure.deflection, "dte_dot": rates @ system.structure.deflection}
-        for number, name in enumerate(COORDINATES):
-            values |= {name: z[:, number], f"{name}_dot": rates[:, number]}
-        time = np.arange(len(states)) / outputs * system.period
-        return swings_of_period(system, time, values, self.cycles)
+        return _swings_of_states(system, states, self.cycles)
 
     def near(self, start: FloatArray, linear: PeriodicSolution) -> tuple[Closed[Run] | None, float]:
         """Close the period near a linear motion; return the result, or None, and a spectral radius near
@@ -593,7 +587,8 @@ def settled_motion(
         torques = driving * system.torque_pinion + brake * system.torque_gear
         count = settling + tables.period
         runs = MomentaryRuns(pair, system, tables)
-        last_run = runs.run(-settling, count, tables.period, state, torques)
+        start = state.copy()
+        last_run = runs.run(-settling, count, tables.period, start, torques)
         states = last_run.states
         end = last_run.end
         if not np.isfinite(end).all():
@@ -631,11 +626,36 @@ def settled_motion(
     powers["sliding"] -= float(driving * rates[0] - brake * rates[1])
     states = without_drift(system, time, states, end, duration)
     error /= float(np.abs(coarse).max())
+    resolved: dict[str, float] = {}
+    if not resolves(system, samples):
+        outputs = _resolving_outputs(system, samples)
+        finer = MomentaryRuns(pair, system, momentary_tables(laws, system, 1.0 / steps, outputs))
+        again = finer.run(-settling, count, tables.period, start, torques)
+        fine_time = np.arange(len(again.states)) / outputs * system.period
+        settled = without_drift(system, fine_time, again.states, again.end, duration)
+        resolved = _swings_of_states(system, settled, tables.period)
     return RevolutionMotion(
         *(pair, system, tables, touch, time, states, last_run.loads, driving, brake, powers, closed, error),
         twin.spectral_radius,
         Origin.SETTLED,
+        resolved_peak_to_peak=resolved,
     )
+
+
+def _resolving_outputs(system: LTVSystem, samples: int) -> int:
+    """Outputs in a mesh cycle, a multiple of ``samples``, that resolve the fastest vibration."""
+    angle = fastest_frequency(system) * system.period
+    return samples * math.ceil(angle / (_OUTPUT_ANGLE * samples))
+
+
+def _swings_of_states(system: LTVSystem, states: FloatArray, cycles: int) -> dict[str, float]:
+    """Peak to peak of each variable of ``SWINGING`` of states (k, 2m) at equal steps over mesh cycles [m]."""
+    z, rates = system.gear_motion(states)
+    values = {"dte": z @ system.structure.deflection, "dte_dot": rates @ system.structure.deflection}
+    for number, name in enumerate(COORDINATES):
+        values |= {name: z[:, number], f"{name}_dot": rates[:, number]}
+    time = np.arange(len(states)) / len(states) * cycles * system.period
+    return swings_of_period(system, time, values, cycles)
 
 
 def _drift_of_twin(twin: RevolutionMotion, step: float) -> float:

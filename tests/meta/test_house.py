@@ -11,8 +11,8 @@ PACKAGES = ("lumped", "multibody", "floquet", "validation")
 #: Files that every folder of a package may need; everything else has a folder.
 LOOSE = {
     "lumped": {"arguments", "cache", "calls", "compiler", "compiler_flags", "errors", "gauss_legendre",
-     "kernel_stamps", "labelling", "linked_code", "outcomes", "path_function", "path_values", "ranges",
-     "root_in_bracket", "typing"},
+     "kernel_stamps", "labelling", "linked_code", "outcomes", "path_function", "path_values", "public_names",
+     "ranges", "root_in_bracket", "typing"},
     "validation": {"stop_signals", "cli", "pytest_plugin"},
 }  # fmt: skip
 #: Folders of tests that belong to no single package.

@@ -327,7 +327,7 @@ def test_neighbours_share_the_load_in_both_models(softening):
         w = np.tril(w, -1) + np.tril(w, -1).T
         loads = loads_of(pressed, k, w, ContactLaw(softening, nominal))
         law = {"softening": softening, "force": nominal, "linear_below": 1e-3 * nominal, "coupled": True}
-        law["apart"] = -1.0  # neighbours may bring any pair into contact
+        law["apart_below"] = -1.0  # neighbours may bring any pair into contact
         theirs = Mesh(np.full(n, 0.015), w, stiffness=k, gap=-pressed, **law).loads(0.0)
         assert loads == pytest.approx(theirs, rel=1e-11, abs=1e-9)
         compressions = pressed - w @ loads
