@@ -23,6 +23,7 @@ from floquet.gear.axes import speed_range
 from lumped import load_gear_pair, preset_names
 from lumped.errors import ParameterError, SpurcheckError
 from tests.evidence.floquet.reference_systems import mathieu_many, mathieu_unstable, meissner_trace
+from tests.unlike_pairs import UNLIKE, unlike_pair
 
 SIZES = (500, 1000, 2000)
 COULOMB = {"friction.law": "coulomb", "friction.coefficient": 0.05}
@@ -32,6 +33,19 @@ PAIRS = {
     "fzg_c": load_gear_pair("fzg_c"),
     "50/50": load_gear_pair("kahraman_blankenship_50_50"),
 }
+#: Pairs and laws of friction with breaks that move along the path at some speeds.
+MOVING_FRICTION = (
+    ("fzg_c", "benedict_kelley"),
+    ("fzg_c", "smoothed_coulomb"),
+    ("fzg_c", "composite"),
+    ("heavily_relieved_under_load", "coulomb"),
+    ("heavily_relieved_under_load", "composite"),
+    ("nasa_art_25_31", "composite"),
+    ("contact_ratio_1_1_large_shifts", "composite"),
+)
+WITHOUT_NUMBERS = dict.fromkeys(
+    f"friction.{name}" for name in ("coefficient", "maximum", "sharpness", "thresholds")
+)
 LAWS = ("none", "coulomb", "benedict_kelley", "xu_kahraman", "smoothed_coulomb", "composite")
 
 
@@ -109,6 +123,34 @@ def proofs() -> None:
                 print(
                     f"| {pair.name} | {rpm} | {low} to 0.1 | {seconds:.1f} | {shares} | {wrong} |", flush=True
                 )
+
+
+def moving_friction(points: int = 600, parts: int = 30) -> None:
+    """Proven share where breaks of friction move with the speed; random points in the proven cells."""
+    print("| pair | law | proven | s | points in proven cells | contradicted |")
+    print("|---|---|---|---|---|---|")
+    rng = np.random.default_rng(11)
+    for name, law in MOVING_FRICTION:
+        pair = (unlike_pair(name) if name in UNLIKE else load_gear_pair(name)).healthy
+        pair = pair.with_({**WITHOUT_NUMBERS, "friction.law": law})
+        axes = {"speed_rpm": np.linspace(500.0, 20000.0, 201), "damping_ratio": np.linspace(0.005, 0.1, 61)}
+        chart, seconds = cpu(lambda pair=pair, axes=axes: stability_chart(pair, axes, prove=True))
+        cells = chart.cell_verdict.values
+        places = rng.integers(0, [[200], [60]], (2, points))
+        random_points = {
+            n: v[k] + rng.uniform(size=k.size) * np.diff(v)[k]
+            for (n, v), k in zip(axes.items(), places, strict=True)
+        }
+        seen = wrong = 0
+        for part in np.array_split(np.arange(points), parts):
+            of_part = {n: np.unique(v[part]) for n, v in random_points.items()}
+            full = stability_chart(pair, of_part, refine=False, rtol=1e-9).verdict.values
+            i, j = (np.searchsorted(axes[n], of_part[n]) - 1 for n in axes)
+            of_cells = cells[np.ix_(i, j)]
+            seen += int((of_cells != 0).sum())
+            wrong += int(((full != of_cells) & (of_cells != 0)).sum())
+        row = f"{pair.name} | {law} | {chart.proven_share:.1%} | {seconds:.1f} | {seen} | {wrong}"
+        print(f"| {row} |", flush=True)
 
 
 def random_chart(rng: np.random.Generator) -> tuple[Any, dict[str, Any]]:
@@ -243,6 +285,7 @@ if __name__ == "__main__":
     warnings.simplefilter("ignore")
     by_size()
     proofs()
+    moving_friction()
     for seed, damping in ((34, True), (35, False), (36, False)):
         at_random(int(sys.argv[1]) if len(sys.argv) > 1 else 40, seed, damping=damping)
     closed_forms(2000)
