@@ -71,6 +71,8 @@ class Mesh:
     ENDS = (0.0080, 0.0235, LENGTH, 0.0, 0.0, 0.0, 0.0)  # FLANKS [m]
 
     def __init__(self, position, coupling=None, **numbers):
+        unknown = numbers.keys() - {*self.LAW._fields, *LINE.names, *PAIR.names}
+        assert not unknown, unknown
         position = np.atleast_1d(np.asarray(position, dtype=float))
         self.law = self.LAW._replace(**{name: numbers[name] for name in self.LAW._fields if name in numbers})
         self.line = np.zeros(1, LINE)

@@ -265,7 +265,7 @@ class TestLimits:
 
 class TestLinearForm:
     def test_at_the_static_approach_it_is_the_force_itself(self):
-        mesh = coupled(friction=[-0.05, 0.02, 0.07], damping=[3e3, 5e3, 2e3], rolling_speed=6.0)
+        mesh = coupled(mu=[-0.05, 0.02, 0.07], damping=[3e3, 5e3, 2e3], rolling_speed=6.0)
         forces, state, loads = mesh.linear()
         for rate in (0.0, 0.02):
             exact = mesh.force(state["approach"], rate)
@@ -280,12 +280,12 @@ class TestLinearForm:
         assert loads["static"].sum() == pytest.approx(mesh.law.force, rel=1e-12)
 
     def test_its_stiffness_is_the_slope_of_the_loads_over_a_common_compression(self):
-        mesh = coupled(friction=[-0.05, 0.02, 0.07])
+        mesh = coupled(mu=[-0.05, 0.02, 0.07])
         h = 1e-9
         forces, state, _ = mesh.linear()
         ends = []
         for sign in (1.0, -1.0):
-            compressed = coupled(friction=[-0.05, 0.02, 0.07])
+            compressed = coupled(mu=[-0.05, 0.02, 0.07])
             compressed.pairs["gap"] -= sign * h
             ends.append(compressed.force(state["approach"], 0.0))
         for name in forces.dtype.names:
