@@ -14,6 +14,7 @@ Gears      geometry, mesh_stiffness, natural_frequencies, static_transmission_er
 Trust      report, uncertainty, compare, validity_flags; crosscheck, whose result has attribution() and
            power_balance()
 Your model check: curves of another model, or a record, beside both programs; reference, reference_names
+Your rig   calibrate: what records say about the assumed inputs
 Stability  stability_chart, stability_margins, stability_boundaries, campbell
 Any system PeriodicSystem, periodic_system, from_second_order, monodromy; averaged_state_space, the pair
            as a StateSpace of python-control
@@ -83,6 +84,7 @@ if TYPE_CHECKING:  # the one list of the public names; below it is read at run t
     from validation import uncertainty as uncertainty
     from validation import validity_flags as validity_flags
     from validation import write_interactive_page as write_interactive_page
+    from validation.calibrate import calibrate as calibrate
     from validation.check import check as check
     from validation.exchange import gear_pair_from_rexs as gear_pair_from_rexs
     from validation.exchange import new_pair as new_pair

@@ -15,6 +15,7 @@ import typer
 from typer.core import TyperGroup
 
 from validation.commands.any_system import floquet
+from validation.commands.calibrate import calibrate
 from validation.commands.check import check
 from validation.commands.compare import compare
 from validation.commands.files import export, init, presets
@@ -96,8 +97,8 @@ def paragraphs(text: str | None) -> str:
 
 
 COMMANDS = (
-    *(report, presets, init, simulate, export, crosscheck, uncertainty, compare, check, stability, floquet),
-    *(response, teeth, interactive, sweep, reference),
+    *(report, presets, init, simulate, export, crosscheck, uncertainty, compare, calibrate, check, stability),
+    *(floquet, response, teeth, interactive, sweep, reference),
 )
 for command in COMMANDS:
     app.command(cls=Once, help=paragraphs(command.__doc__))(command)

@@ -44,8 +44,11 @@ def without_shafts(pair: GearPair) -> GearPair:
     """Return the pair on the springs of ``bearings``: without shafts and the ranges of their values."""
     if pair.shafts is None:
         return pair
-    ranges = {path: spread for path, spread in pair.uncertainty if path.split(".")[0] != "shafts"}
-    return pair.with_({"shafts": None, "uncertainty": ranges})
+    tables = {
+        name: {path: one for path, one in getattr(pair, name) if path.split(".")[0] != "shafts"}
+        for name in ("uncertainty", "posterior")
+    }
+    return pair.with_({"shafts": None} | tables)
 
 
 def with_supports(pair: GearPair, supports: Supports | None) -> GearPair:

@@ -22,7 +22,7 @@ from lumped.fields.units import Quantity, to_file, to_si
 #: A value of a parameter file. A list is a tuple here.
 Value = float | int | bool | str | tuple[Any, ...]
 #: Tables of a pair about fields. These tables are no values of the pair.
-ABOUT = ("sources", "assumed", "uncertainty")
+ABOUT = ("sources", "assumed", "uncertainty", "posterior")
 #: Fields that are words for the reader.
 WORDS = ("name", "description")
 

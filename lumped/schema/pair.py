@@ -53,6 +53,7 @@ from lumped.schema.gear import BasicRack, Gear
 from lumped.schema.old_formats import FORMAT, upgraded
 from lumped.schema.operating import LARGEST_SPEED as LARGEST_SPEED
 from lumped.schema.operating import OperatingPoint as OperatingPoint
+from lumped.schema.posterior import ERROR, PosteriorTable, problems_of_columns
 from lumped.schema.shafts import Shafts
 
 #: Name that a pair does not have -> what to write.
@@ -142,6 +143,11 @@ class GearPair(Section, metaclass=_InOurWords):
         description="field path -> how far its value may be off: '0.02 .. 0.10', '+- 2 um', '+- 10 %', "
         "'/ 2 .. * 2', or a list of choices",
     )
+    posterior: PosteriorTable = Field(
+        (),
+        description="field path -> values in the possible machines that measured records leave, the first of "
+        "the best fit; spurcheck calibrate writes it",
+    )
 
     @model_validator(mode="before")
     @classmethod
@@ -163,6 +169,9 @@ class GearPair(Section, metaclass=_InOurWords):
         wrong = [problem for path, _ in self.sources for problem in _path_problems(path, "sources")]
         wrong += [problem for path, _ in self.uncertainty for problem in _path_problems(path, "uncertainty")]
         wrong += problems_of(type(self), self.assumed)
+        columns = [path for path, _ in self.posterior if not path.startswith(ERROR)]
+        wrong += [problem for path in columns for problem in _path_problems(path, "posterior")]
+        wrong += problems_of_columns(self.posterior)
         if wrong:
             raise ParameterError(wrong)
         for index, name in enumerate(("pinion", "gear")):
@@ -477,7 +486,7 @@ class GearPair(Section, metaclass=_InOurWords):
         """
         data = super().to_mapping()
         data.pop("assumed")
-        tables = {name: dict(data.pop(name, {})) for name in ("sources", "uncertainty")}
+        tables = {name: dict(data.pop(name, {})) for name in ("sources", "uncertainty", "posterior")}
         written = self.assumed.without(
             *self._assumed_sizes()
         )  # the assumed sizes follow from the written fields

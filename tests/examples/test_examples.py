@@ -225,3 +225,14 @@ def test_29_the_bearing_hears_the_mesh_order_at_its_resonance(shown):
     hertz = float(loudest["order"] * loudest["speed_rpm"]) * 28 / 60
     # A mesh stiffness that varies moves the peak from the averaged pair's frequency by some per cent.
     assert np.abs(spurcheck.natural_frequencies(module.PAIR) / hertz - 1.0).min() < 0.06
+
+
+def test_30_the_rig_is_among_the_machines_that_its_runs_leave(shown):
+    module, posterior = shown(30)
+    for name, true in module.TRUTH.items():
+        low, _, high = posterior.table["after"].sel(input=name).to_numpy()
+        # 5 to 95 %, and as much again on both sides: about three standard deviations.
+        assert low - (high - low) < true < high + (high - low)
+    # Nothing moves off the line of action but by friction.
+    assert posterior.shares["mesh.stiffness_factor"] < 0.5
+    assert "bearings.pinion.oloa_damping_ratio" in posterior.not_identified

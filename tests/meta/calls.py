@@ -21,7 +21,9 @@ from lumped.model.periodic_system import LTVSystem, without_shafts
 from tests.meta.test_public_names import FUNCTIONS
 from tests.validation.check.record.tooth_forces import tooth_force_record
 from validation import exchange, studies
+from validation.calibrate import calibrate
 from validation.check import check
+from validation.check.curves import Channel, Curves
 from validation.check.reference import lumped_motion
 from validation.interactive.results import Sampling
 
@@ -93,6 +95,18 @@ def _record(pair):
     )
 
 
+def _calibrated(pair, **held):
+    """Posterior of one input, by a record of the pair's own motion with a little noise."""
+    pair = pair.with_(CHANGES["validation.calibrate.calibrate"])
+    prediction = validation.predict(pair.healthy, **held)
+    swing = prediction.cycle["dte"].to_numpy()
+    cycles = np.arange(20 * swing.size) / swing.size * prediction.mesh_cycles
+    noise = 0.01 * np.ptp(swing) * np.random.default_rng(1).standard_normal(cycles.size)
+    channel = Channel("dte", "dte", np.tile(swing, 20) + noise)
+    record = Curves("rig", "mesh_cycles", cycles, (channel,), "measurement")
+    return calibrate(pair, record, machines=16, **held)
+
+
 def _page_one(pair, folder, **held):
     """Numbers of page 1 of a quick report."""
     written = validation.report(pair, folder / "report", quick=True, force=True, **held)
@@ -125,6 +139,12 @@ def _of(name, *arguments, **fixed):
 #: Function -> how the pair is varied first.
 CHANGES = {
     "floquet.stability_boundaries": {"mesh.damping_ratio": 0.0},
+    "validation.calibrate.calibrate": {
+        "assumed": {},
+        "pinion.tip_alteration": 0.0,
+        "gear.tip_alteration": 0.0,
+        "uncertainty": {"mesh.damping_ratio": "/ 2 .. * 2"},
+    },
     "validation.compare": {"uncertainty": {"mesh.damping_ratio": "+- 10 %"}},
     "validation.uncertainty": {"uncertainty": {"mesh.damping_ratio": "+- 10 %"}},
 }
@@ -157,6 +177,7 @@ COMPUTED = {
         **held,
     ),
     "validation.uncertainty": _of("validation.uncertainty", 16),
+    "validation.calibrate.calibrate": lambda pair, folder, **held: _calibrated(pair, **held),
     "validation.check.check": lambda pair, folder, **held: check(pair, _record(pair), explain=False, **held),
     "validation.studies.run_sweep": _study,
 }

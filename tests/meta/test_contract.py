@@ -74,7 +74,7 @@ NO_FIGURE = {
     "lumped.losses.losses_of_laws", "lumped.meeting_teeth", "lumped.path_of_contact.friction_profile",
     "lumped.shaft_modes", "lumped.stiffness_components", "lumped.tooth_gaps",
     "multibody.attribution", "floquet.stability_boundaries", "floquet.stability_margins",
-    "validation.check.check",
+    "validation.calibrate.calibrate", "validation.check.check",
     "validation.studies.run_sweep", "validation.uncertainty", "validation.write_interactive_page",
 }  # fmt: skip
 

@@ -30,6 +30,7 @@ ELSEWHERE = {
     "lumped/fields/section.py": "assignment: tests/lumped/schema/test_pair; characters: tests/hardening",
     "lumped/schema/changes.py": "short names: tests/lumped/schema/test_pair",
     "lumped/schema/files.py": "files and presets: tests/lumped/schema/test_refusals",
+    "lumped/schema/posterior.py": "lists of machines: tests/validation/prediction/test_machines",
     "lumped/schema/own_laws.py": "functions and arrays of the user: tests/lumped/schema/test_own_laws",
 }
 #: The same of single names: (file, last part of the name) -> the test.

@@ -73,6 +73,8 @@ class MotionCurves:
 
     def mean_cycle(self) -> MotionCurves:
         """Return the motion averaged over the mesh cycles of its period."""
+        if self.mesh_cycles == 1:  # a copy of every variable would take longer than the motion
+            return self
         size = self.motion.sizes["time"] // self.mesh_cycles
         first = self.motion.isel(time=slice(0, size))
         for name, variable in self.motion.data_vars.items():

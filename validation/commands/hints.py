@@ -90,7 +90,7 @@ COMMANDS = {
     "plot": "spurcheck simulate PAIR --steady -o motion.png; in Python: spurcheck.plot(result)",
     "convert": "spurcheck init --from-rexs FILE, or spurcheck export PAIR -o FILE",
     "import": "spurcheck init --from-rexs FILE",
-    **dict.fromkeys(("calibrate", "fit", "identify"), "spurcheck report PAIR --record FILE"),
+    **dict.fromkeys(("fit", "identify", "identification"), "spurcheck calibrate PAIR RECORD"),
     "spectrum": "spurcheck teeth PAIR; in Python: spurcheck.order_spectrum(motion)",
     "campbell": "spurcheck stability PAIR; in Python: spurcheck.campbell(pair)",
 }

@@ -36,8 +36,10 @@ from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair, leaf_paths
 from lumped.typing import FloatArray, ProgressRequest
 from validation.files.formatting import side_by_side
-from validation.prediction.inputs import Input, uncertain_inputs
+from validation.prediction.inputs import uncertain_inputs
+from validation.prediction.machines import errors_of, with_errors
 from validation.prediction.motion import QUANTITIES, Motion, predicted
+from validation.prediction.uncertain_input import Input
 from validation.prediction.uncertainty import (
     ALONE,
     LEAST_SAMPLES,
@@ -247,7 +249,7 @@ def _names(pairs: Sequence[GearPair], names: Sequence[str] | None) -> list[str]:
     if not 2 <= len(pairs) <= len(ascii_uppercase):
         allowed = f"2 to {len(ascii_uppercase)}"
         raise refuse("variants", len(pairs), allowed, "Give another pair, or pair.with_(...).")
-    about = {"name": "variant", "description": "", "sources": {}, "uncertainty": {}}
+    about = {"name": "variant", "description": "", "sources": {}, "uncertainty": {}, "posterior": {}}
     plain = [one.with_(about) for one in pairs]
     for k, one in enumerate(plain):
         if one in plain[:k]:
@@ -307,7 +309,8 @@ def _range(one: Input) -> tuple[Any, ...]:
     The ends of a choice are NaN, which never equals NaN, and are left out.
     """
     ends = () if one.choices else (_rounded(one.low), _rounded(one.high))
-    return (*ends, frozenset(one.choices), one.written if one.field.endswith(".seed") else "")
+    words = one.written if one.field.endswith(".seed") else ""
+    return (*ends, frozenset(one.choices), words, one.rows, one.errors)
 
 
 def _remarks(draws: Sequence[_Draw], pairs: Sequence[GearPair], letters: Sequence[str]) -> list[str]:
@@ -370,7 +373,10 @@ def _numbers(
         float(not prediction.stable),
         float(prediction.motion is Motion.LINEAR),
     ]
-    numbers = np.array([*(prediction.numbers[name] for name in RESULTS), *over_period, *flags])
+    errors = errors_of(changes)
+    with_error = with_errors(prediction.numbers, errors)
+    over_period = [one * (1.0 + errors.get("dte_peak_to_peak", 0.0)) for one in over_period]
+    numbers = np.array([*(with_error[name] for name in RESULTS), *over_period, *flags])
     return numbers if np.isfinite(numbers).all() else None
 
 

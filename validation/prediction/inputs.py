@@ -11,12 +11,11 @@ from __future__ import annotations
 
 import fnmatch
 import functools
-import math
 import re
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from importlib.resources import files
 from typing import Any
 
@@ -28,6 +27,8 @@ from lumped.schema.bodies import bodies_of
 from lumped.schema.fields_read import fields_read
 from lumped.schema.pair import GearPair, field_at, field_values, leaf_paths, stated_unit
 from lumped.stiffness.registry import MODELS
+from validation.prediction.machines import machines_left
+from validation.prediction.uncertain_input import Input, Part
 
 _NUMBER = r"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)"
 _OFFSET = re.compile(rf"\+-\s*{_NUMBER}\s*(.*)")
@@ -57,92 +58,21 @@ _TIED = (
 )
 
 
-@dataclass(frozen=True)
-class Part:
-    """A field that an input moves.
-
-    Attributes
-    ----------
-    field : path of the field
-    low, high : ends of the range in the unit of the parameter file; NaN: the input is a choice between names
-    geometric : whether the distribution is uniform over the logarithm of the value
-    levels : number of values that the field takes, each in the middle of an equal part of the range; 0: all
-        values
-    """
-
-    field: str
-    low: float = math.nan
-    high: float = math.nan
-    geometric: bool = False
-    levels: int = 0
-
-    def at(self, share: float) -> float:
-        """Return the value below which a share of the distribution lies, in file units."""
-        if self.field.endswith(".seed"):
-            return int(self.low + (self.high - self.low) * share)
-        if self.levels:
-            share = (min(int(share * self.levels), self.levels - 1) + 0.5) / self.levels
-        if self.geometric:
-            return float(self.low * (self.high / self.low) ** share)
-        return self.low + (self.high - self.low) * share
-
-
-@dataclass(frozen=True)
-class Input:
-    """An uncertain input. One input may move several fields together.
-
-    Attributes
-    ----------
-    field : name of the input: the path of the field, or a common name such as ``bearings.pinion.stiffness``
-    parts : fields that the input moves
-    choices : names between which the input chooses; empty: the input is a number
-    unit : unit in the parameter file
-    written : range as the file or the default states it
-    reason : reason and source of the range
-    """
-
-    field: str
-    parts: tuple[Part, ...]
-    choices: tuple[str, ...]
-    unit: str
-    written: str
-    reason: str
-
-    @property
-    def low(self) -> float:
-        """Lower end of the first field."""
-        return self.parts[0].low
-
-    @property
-    def high(self) -> float:
-        """Upper end of the first field."""
-        return self.parts[0].high
-
-    def at(self, share: float) -> float | str:
-        """Return the value of the first field below which a share of the distribution lies, in file units."""
-        if self.choices:
-            return self.choices[min(int(share * len(self.choices)), len(self.choices) - 1)]
-        return self.parts[0].at(share)
-
-    def changes(self, share: float) -> dict[str, Any]:
-        """Return the fields with their values at a share of the distribution, for ``GearPair.with_``."""
-        if self.choices:
-            name = self.at(share)
-            return {self.field: {"model": name} if self.field == "mesh.stiffness" else name}
-        return {part.field: part.at(share) for part in self.parts}
-
-
 @functools.lru_cache(maxsize=16)  # a report asks a dozen times
 def uncertain_inputs(pair: GearPair) -> tuple[Input, ...]:
     """Return every uncertain input of a pair.
 
     The inputs are those of ``[uncertainty]`` and, with documented default ranges, the assumed values. An
     assumed value counts where the pair reads the value, or would read the value with another law or model
-    among the choices. For random teeth of a tolerance class the seed is an input. An unreadable range is
-    refused, and a range with values outside the limits of the field.
+    among the choices. Fields that records were fitted with are one input, the machines of ``[posterior]``.
+    For random teeth of a tolerance class the seed is an input. An unreadable range is refused, and a range
+    with values outside the limits of the field.
     """
-    stated = dict(pair.uncertainty)
+    left = machines_left(pair)
+    fitted = {part.field: left.written for part in left.parts} if left else {}
+    stated = {field: one for field, one in pair.uncertainty if not _covered(field, fitted)}
     stated_inputs = [_input(pair, field, spread, "stated in the file") for field, spread in stated.items()]
+    stated |= fitted
     for gear in ("pinion", "gear"):
         deviations = getattr(pair, gear).deviations
         if deviations is not None and deviations.tolerance_class is not None:
@@ -167,6 +97,7 @@ def uncertain_inputs(pair: GearPair) -> tuple[Input, ...]:
     read = _read(pair, [*stated_inputs, *assumed])
     assumed = [one for one in assumed if one.choices or one.field in read]
     return (
+        *([left] if left else []),
         *stated_inputs,
         *_together(assumed),
         *_blanks(pair, stated),
@@ -265,7 +196,7 @@ def forms_beside(pair: GearPair) -> dict[str, dict[str, Any]]:
     """
     other = "prescribed" if pair.mesh.contact == "loaded" else "loaded"
     forms: dict[str, dict[str, Any]] = {}
-    if not pair.mesh.stiffness.whole_mesh:
+    if not pair.mesh.stiffness.whole_mesh and "mesh.contact" not in dict(pair.posterior):
         forms[f"mesh.contact = {other}"] = {"mesh.contact": other}
     models = next((one.choices for one in uncertain_inputs(pair) if one.field == "mesh.stiffness"), None)
     for name in MODELS if models else ():

@@ -36,8 +36,10 @@ from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.meeting_teeth import period_of
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray, ProgressRequest
-from validation.prediction.inputs import Input, forms_beside, uncertain_inputs
+from validation.prediction.inputs import forms_beside, uncertain_inputs
+from validation.prediction.machines import errors_of, with_errors
 from validation.prediction.motion import ORDERS, QUANTITIES, Motion, Prediction, predicted
+from validation.prediction.uncertain_input import Input
 from validation.signals.averages import GEARS, sidebands
 
 #: Percentiles of a range. The swing of an input runs from the first to the last.
@@ -466,14 +468,17 @@ def _numbers(pair: GearPair, changes: Sequence[tuple[Input, float]]) -> FloatArr
             teeth = of_teeth(sampled)
     except SpurcheckError:
         return None
+    errors = errors_of(changes)
     orders = np.zeros(ORDERS)
     orders[: prediction.bearing_orders.size] = prediction.bearing_orders
+    orders *= 1.0 + errors.get("bearing_rms", 0.0)
+    teeth[:1] = [one * (1.0 + errors.get("dte_peak_to_peak", 0.0)) for one in teeth[:1]]
     flags = [
         float(prediction.contact_lost),
         float(not prediction.stable),
         float(prediction.motion is Motion.LINEAR),
     ]
-    return np.array([*prediction.numbers.values(), *orders, *teeth, *flags])
+    return np.array([*with_errors(prediction.numbers, errors).values(), *orders, *teeth, *flags])
 
 
 def of_teeth(pair: GearPair) -> list[float]:

@@ -41,7 +41,9 @@ def _parameters_table(results: Results) -> Table:
     pair = results.given
     values = {path: value for path, value in field_values(pair).items() if path not in WORDS}
     ranges = {
-        part.field: uncertain.written for uncertain in uncertain_inputs(pair) for part in uncertain.parts
+        part.field: uncertain.range_of(part)
+        for uncertain in uncertain_inputs(pair)
+        for part in uncertain.parts
     }
     known_count, assumed = results.inputs
     read = read_values(pair, contact_lost=results.backlash_counts)

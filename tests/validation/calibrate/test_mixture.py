@@ -1,0 +1,88 @@
+"""The posterior of linear data has a closed form: the mixture must give it."""
+
+import numpy as np
+import pytest
+from scipy.linalg import cholesky
+from scipy.stats import multivariate_normal
+
+from validation.calibrate.discrepancy import LEVELS, prior_of_levels
+from validation.calibrate.fit import Minimum, Motions
+from validation.calibrate.forms import Form
+from validation.calibrate.mixture import component, draws, mixture, moments, pareto_shape
+
+FORM = Form((), 1.0)
+RNG = np.random.default_rng(5)
+SLOPES = RNG.standard_normal((6, 3))
+DATA = RNG.standard_normal(6)
+NOISE = 0.4 * np.eye(6) + 0.1
+
+
+def _component(offset, level=0.0, prior=1.0, covariance=NOISE, at=None):
+    """Component about a point: data = offset + SLOPES z, with a shift that changes nothing."""
+    z = np.zeros(3) if at is None else at
+    motions = Motions(offset + SLOPES @ z, np.zeros((6, 0)))
+    minimum = Minimum(z, motions, SLOPES, 0.0)
+    return component(FORM, minimum, level, prior, cholesky(covariance, lower=True), DATA)
+
+
+def test_mean_and_covariance_are_those_of_bayes_rule():
+    # Data less offset = SLOPES z + noise, z standard normal: the posterior of linear regression.
+    one = mixture([_component(np.zeros(6))])[0]
+    information = np.eye(3) + SLOPES.T @ np.linalg.solve(NOISE, SLOPES)
+    np.testing.assert_allclose(one.covariance, np.linalg.inv(information), rtol=1e-9)
+    mean = np.linalg.solve(information, SLOPES.T @ np.linalg.solve(NOISE, DATA))
+    np.testing.assert_allclose(one.z, mean, rtol=1e-9)
+
+
+def test_the_mean_does_not_depend_on_the_point_where_the_slopes_were_taken():
+    a = _component(np.zeros(6))
+    b = _component(np.zeros(6), at=np.array([0.3, -0.2, 0.5]))
+    np.testing.assert_allclose(a.z, b.z, atol=1e-12)
+    assert a.weight == pytest.approx(b.weight, abs=1e-10)
+
+
+def test_weights_are_the_evidence_of_two_forms():
+    # The data of a form are normal with the covariance NOISE + SLOPES SLOPES^T about its offset.
+    offsets = [np.zeros(6), np.full(6, 0.5)]
+    priors = [0.7, 0.3]
+    covariance = NOISE + SLOPES @ SLOPES.T
+    evidence = [
+        prior * multivariate_normal(offset, covariance).pdf(DATA)
+        for offset, prior in zip(offsets, priors, strict=True)
+    ]
+    found = mixture([_component(o, prior=p) for o, p in zip(offsets, priors, strict=True)])
+    by_size = sorted(np.array(evidence) / sum(evidence), reverse=True)
+    assert [one.weight for one in found] == pytest.approx(by_size, rel=1e-9)
+
+
+def test_a_larger_covariance_counts_against_a_level():
+    # Residuals of the size of the noise: the level without a discrepancy is the more probable one.
+    small = _component(DATA - SLOPES @ np.array([0.1, 0.0, -0.1]))
+    large = _component(DATA - SLOPES @ np.array([0.1, 0.0, -0.1]), covariance=100.0 * NOISE)
+    assert small.weight > large.weight + 3.0
+
+
+def test_moments_and_draws_contain_the_distance_of_the_minima():
+    found = mixture([_component(np.zeros(6)), _component(SLOPES @ np.array([3.0, 0.0, 0.0]))])
+    mean, covariance = moments(found)
+    places, z = draws(found, 4096, seed=1)
+    np.testing.assert_allclose(z.mean(axis=0), mean, atol=0.05)
+    np.testing.assert_allclose(np.cov(z.T), covariance, atol=0.1)
+    share = np.mean(np.array(places) == 0)
+    assert share == pytest.approx(found[0].weight, abs=0.01)
+
+
+def test_prior_of_the_levels_is_half_normal():
+    prior = prior_of_levels()
+    assert prior.sum() == pytest.approx(1.0)
+    # P(|s| < 1 %) = erf(0.01/(0.05 sqrt 2)) = 0.1585; P(|s| > 15 %) = 1 - erf(3/sqrt 2) = 0.0027.
+    assert prior[0] == pytest.approx(0.1585, abs=1e-4)
+    assert prior[-1] == pytest.approx(0.0027, abs=1e-4)
+    assert len(prior) == len(LEVELS)
+
+
+@pytest.mark.parametrize(("tail", "heavy"), [(0.1, False), (1.5, True)])
+def test_the_shape_of_the_tail_tells_reliable_weights(tail, heavy):
+    # Weights u^-k have a Pareto tail of the shape k.
+    weights = (np.arange(1, 257) / 257.0) ** -tail
+    assert (pareto_shape(np.log(weights)) > 0.7) is heavy

@@ -1,0 +1,68 @@
+"""Covariance of the data of a fit: noise of the records, and the discrepancy of the model.
+
+No model is exact: with the best inputs each order of each channel is still off. The discrepancy is a random
+addition to every complex order. At the level s each part of order m has the variance
+
+    s^2 (A^2 + |V_m|^2)/2,    A the largest order of the channel.
+
+Half of the variance is common to all records of the same quantity, in the phase of each record: a model that
+is too soft is too soft at every speed. The other half is independent.
+
+Sources: Kennedy and O'Hagan, J. R. Statist. Soc. B 63 (2001) 425, section 4 (a model is calibrated together
+with its discrepancy); docs/how_to/calibrate.md.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Sequence
+from math import erf
+
+import numpy as np
+from scipy.linalg import block_diag
+
+from lumped.typing import FloatArray
+from validation.calibrate.measured import Measured
+
+#: Levels of the discrepancy over which a posterior is summed; the prior of a level is half-normal.
+LEVELS = (0.0, 0.02, 0.05, 0.10, 0.20)
+DEVIATION = 0.05
+#: Share of the variance that is common to all records.
+_COMMON = 0.5
+
+
+def prior_of_levels() -> FloatArray:
+    """Return the (level,) prior probabilities of ``LEVELS``: the half-normal prior between their middles."""
+    middles = 0.5 * (np.array(LEVELS[1:]) + np.array(LEVELS[:-1]))
+    below = np.array([0.0, *(erf(one / (DEVIATION * np.sqrt(2.0))) for one in middles), 1.0])
+    return np.diff(below)
+
+
+def noise_covariance(records: Sequence[Measured]) -> FloatArray:
+    """Return the (n, n) covariance of all data by noise and numerics."""
+    return np.asarray(block_diag(*(channel.noise for one in records for channel in one.channels)))
+
+
+def discrepancy_covariance(records: Sequence[Measured]) -> FloatArray:
+    """Return the (n, n) covariance of all data by a discrepancy of the level 1."""
+    places: dict[tuple[str, str | None, float], list[tuple[int, int, complex]]] = defaultdict(list)
+    start = 0
+    for one in records:
+        for channel in one.channels:
+            values = channel.orders.values
+            count = values.size
+            for j, (order, value) in enumerate(zip(channel.orders.orders, values, strict=True)):
+                size = np.sqrt(0.5 * (channel.scale**2 + abs(value) ** 2))
+                turn = value / abs(value) if abs(value) > 0.0 else 1.0
+                places[(*channel.key, float(order))].append((start + j, start + j + count, size * turn))
+            start += 2 * count
+    covariance = np.zeros((start, start))
+    for same in places.values():
+        for row, (real, imaginary, size) in enumerate(same):
+            for column, (other_real, other_imaginary, other) in enumerate(same):
+                share = 1.0 if row == column else _COMMON
+                product = share * size * np.conj(other)
+                covariance[real, other_real] = covariance[imaginary, other_imaginary] = product.real
+                covariance[imaginary, other_real] = product.imag
+                covariance[real, other_imaginary] = -product.imag
+    return covariance
