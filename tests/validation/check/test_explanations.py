@@ -17,6 +17,7 @@ import scipy.signal
 import lumped
 from lumped.schema.bodies import bodies_of
 from tests.unlike_pairs import unlike_pair
+from tests.validation.check.motions import lumped_motion
 from validation.check.curves import Channel, Curves
 from validation.check.explanations.cause import Variant
 from validation.check.explanations.misreadings import causes_of_channels
@@ -24,7 +25,6 @@ from validation.check.explanations.physics import motion_of
 from validation.check.explanations.registry import EXPLANATIONS
 from validation.check.ladder import climb
 from validation.check.problem import Problem
-from validation.check.reference import lumped_motion
 
 LIMIT = 0.05
 CHANNELS = ("dte", "theta_g", "x_p", "y_g", "bearing_force_x_p")
@@ -254,7 +254,7 @@ PAIR_OF = {
 ALWAYS = ("sign of a channel", "mesh stiffness", "torque", "friction sign", "mesh damping")
 #: Rivals of a cause: so many entries of the registry before it and behind it.
 NEAR = 3
-#: Cases that try the whole registry.
+#: Cases that try the whole registry, with one value each.
 WHOLE = ("friction over the path", "mass of the gear", "delay of a channel")
 READINGS = {
     "sign of a channel": lambda curves: changed(curves, ("y_g",), lambda v: -v),
@@ -358,9 +358,9 @@ def turned(curves, degrees, *axes):
     return replace(curves, channels=tuple(replace(c, values=values[c.name]) for c in curves.channels))
 
 
-def rivals(name, problem):
+def rivals(name, problem, whole=False):
     """The cause and the causes that it is tried beside; None: the whole registry."""
-    if name in WHOLE:
+    if whole:
         return None
     listed = list(EXPLANATIONS)
     place = listed.index(name)
@@ -370,7 +370,7 @@ def rivals(name, problem):
     return [*causes, *causes_of_channels(problem)] if of_channels else causes
 
 
-def climbed(problem, shared, pair_name, name, most_motions=300):
+def climbed(problem, shared, pair_name, name, most_motions=300, whole=False):
     """The ladder of a problem beside the rivals of a cause, with the motions of its pair."""
     return climb(
         problem,
@@ -378,7 +378,7 @@ def climbed(problem, shared, pair_name, name, most_motions=300):
         budget=600.0,
         motions=shared.setdefault(pair_name, {}),
         most_motions=most_motions,
-        causes=rivals(name, problem),
+        causes=rivals(name, problem, whole),
     )
 
 
@@ -452,7 +452,7 @@ def test_fixed_value(name, pairs, shared):
         curves = replace(curves, places=sampled(motion, channels).places)
     problem = Problem.of(pair, curves, motion)
     most = 12 if pair_name in ("eccentric", "on shafts", "contact lost") else 300
-    assert says(climbed(problem, shared, pair_name, name, most), name)
+    assert says(climbed(problem, shared, pair_name, name, most, name in WHOLE), name)
 
 
 @pytest.mark.parametrize("name", FREE)
@@ -465,7 +465,8 @@ def test_free_factor_is_recovered(name, pairs, shared):
     # A bearing in one direction is told by the displacement of its gear in this direction.
     channels = (*CHANNELS, "x_g", "y_p") if name.endswith(("along", "across")) else CHANNELS
     curves = sampled(other, channels)
-    ladder = climbed(Problem.of(pair, curves, lumped_motion(pair)), shared, pair_name, name)
+    problem = Problem.of(pair, curves, lumped_motion(pair))
+    ladder = climbed(problem, shared, pair_name, name, whole=name in WHOLE)
     assert says(ladder, name)
     if ladder.steps[0].name == name:
         assert ladder.steps[0].factor == pytest.approx(cause.shown(FREE[name]), rel=0.02)
@@ -500,7 +501,8 @@ def test_reading(name, pairs, shared):
     motion = lumped_motion(pair)
     both = ("dte", *(one for axes in AXES for one in axes)) if name.startswith("axes") else CHANNELS
     curves = READINGS[name](sampled(motion, both))
-    assert says(climbed(Problem.of(pair, curves, motion), shared, "unlike", name), name)
+    problem = Problem.of(pair, curves, motion)
+    assert says(climbed(problem, shared, "unlike", name, whole=name in WHOLE), name)
 
 
 @pytest.mark.parametrize(
