@@ -174,7 +174,7 @@ def step_maps(
     """
     marks = _marks(system, np.empty(0) if outputs is None else outputs)
     grid = _step_grid(marks, 1.0, fastest_frequency(system), every_step, step_angle)
-    maps = _maps_over([system], [grid], extra, stages)[0]
+    maps = _maps_over([(system, grid)], extra, stages)[0]
     if isinstance(maps, NumericalError):
         raise maps
     return maps
@@ -202,20 +202,22 @@ def step_maps_together(
         steps = 0 if isinstance(grid, NumericalError) else grid.length.size
         full = steps + sum(one.length.size for _, one in waiting) > _TOGETHER_STEPS
         if waiting and (full or isinstance(grid, NumericalError)):
-            yield from _maps_over(*zip(*waiting, strict=True), extra, STAGES)
+            yield from _maps_over(waiting, extra, STAGES)
             waiting = []
         if isinstance(grid, NumericalError):
             yield grid
         else:
             waiting.append((system, grid))
     if waiting:
-        yield from _maps_over(*zip(*waiting, strict=True), extra, STAGES)
+        yield from _maps_over(waiting, extra, STAGES)
 
 
 def _maps_over(
-    systems: Sequence[LTVSystem], grids: Sequence[_StepGrid], extra: FloatArray, stages: int
+    members: Sequence[tuple[LTVSystem, _StepGrid]], extra: FloatArray, stages: int
 ) -> list[StepMaps | NumericalError]:
     """Maps of systems that go together, each over its grid. Those of several systems are stored."""
+    systems = [system for system, _ in members]
+    grids = [grid for _, grid in members]
     system = systems[0]
     extra_columns = padded(system, extra)
     owner = np.repeat(np.arange(len(grids)), [grid.length.size for grid in grids])

@@ -136,8 +136,7 @@ def solutions_over_speed(
 ) -> Iterator[PeriodicSolution | None]:
     """Yield the ``periodic_solution`` of systems of one pair over speed, without error estimate.
 
-    Systems that differ in nothing but the speed are computed together: a motion then takes a quarter of the
-    time.
+    Systems that differ in nothing but the speed are computed together: a motion then takes 0.6 of the time.
 
     Parameters
     ----------
