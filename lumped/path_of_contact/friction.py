@@ -136,11 +136,18 @@ def fit_law(path: ContactPath, settings: FrictionSettings, name: str) -> PathFun
     return fit_signed(law, path, settings)
 
 
+@lru_cache(maxsize=256)
+def _largest_mu(law: FrictionLaw, path: ContactPath, settings: FrictionSettings) -> float:
+    """Largest mu of a law at the sampled positions of a path [-]."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        return float(np.abs(law.signed(path.sampled_positions, path, settings)).max())
+
+
 def _must_be_friction(path: ContactPath, settings: FrictionSettings, law: FrictionLaw) -> None:
     """Refuse a law with mu above 1, as law III has in thin oil under high pressure."""
-    xi = path.sampled_positions
-    with np.errstate(over="ignore", invalid="ignore"):
-        largest = float(np.abs(law.signed(xi, path, settings)).max())
+    scaled = law.over_speed(path, settings)
+    at_fit_speed, factor = (path, 1.0) if scaled is None else scaled
+    largest = factor * _largest_mu(law, at_fit_speed, settings)
     if not largest <= 1.0:
         reasons = "; ".join(map(str, violations_of(path, settings, law.name))) or "no range of it was left"
         raise refuse(
