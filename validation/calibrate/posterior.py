@@ -35,6 +35,8 @@ from validation.prediction.uncertainty import PERCENTILES
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from validation.calibrate.next_test import Candidate
+
 #: The records do not know an input whose posterior keeps more than this share of the prior width.
 UNKNOWN = 0.9
 #: A form is known from this probability on.
@@ -327,6 +329,13 @@ class Posterior(DisplayedResult):
             f"{ERROR}{name}": tuple(_rounded(float(values[j])) for j in by_size)
             for name, values in errors.items()
         }
+
+    @cached_property
+    def next_tests(self) -> tuple[Candidate, ...]:
+        """Tests that may be run next, the one that leaves least of the results of page 1 first."""
+        from validation.calibrate.next_test import next_tests
+
+        return next_tests(self)
 
     @property
     def sentences(self) -> tuple[str, ...]:

@@ -38,6 +38,12 @@ def calibrate(
             help="Allow the model to be off in each order; without it the ranges are too narrow.",
         ),
     ] = True,
+    next_test: Annotated[
+        bool,
+        typer.Option(
+            "--next-test/--no-next-test", help="Say which test would leave least of the ranges of page 1."
+        ),
+    ] = True,
     machines: int = 64,
     seed: int = 1,
     supports: opt.Supports = None,
@@ -76,6 +82,8 @@ def calibrate(
         print_json(_as_json(posterior))
     else:
         _show(posterior)
+        if next_test:
+            stdout().print(f"next test: {posterior.next_tests[0].words}" if posterior.next_tests else "")
     if output is None:
         note("Not written: -o fitted.toml writes the fitted pair.")
     elif output.suffix.lower() == ".toml":

@@ -123,6 +123,7 @@ def test_the_command_writes_the_file_and_says_what_is_not_known(truth, tmp_path,
     result = RUNNER.invoke(app, line)
     assert result.exit_code == 0, result.output
     assert "They do not know: bearings.pinion.oloa_damping_ratio" in " ".join(result.output.split())
+    assert "next test: transmission error" in " ".join(result.output.split())
     assert spurcheck.load_gear_pair("fitted.toml").posterior
     again = RUNNER.invoke(app, line)
     assert again.exit_code == 2
