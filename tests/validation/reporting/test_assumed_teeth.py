@@ -14,6 +14,8 @@ from lumped.outcomes import Absent
 from tests.unlike_pairs import known_sizes, unlike_pair
 from tests.validation.reporting.written import SMALL, plain
 from validation.prediction.assumed_teeth import REVOLUTION, WIDENED, revolution_range, widened
+from validation.reporting.blocks import Text
+from validation.reporting.chapters import how_sure
 from validation.reporting.effort import FULL, QUICK
 from validation.reporting.facts import assumed_teeth_words, facts_of, of_assumed_teeth
 from validation.reporting.page_one import PageOne, page_one
@@ -160,3 +162,9 @@ def test_what_the_time_left_out_is_said(counts, words):
     teeth.attrs |= counts | {"tolerance_class": 6, "inputs": "varied", "period": 40}
     said = plain(assumed_teeth_words(teeth, 10.0, widens=True))
     assert re.sub(r"[\d.]+ to [\d.]+ µm", "LOW to HIGH µm", said) == words
+
+
+def test_the_chapter_says_which_results_have_perfect_teeth(results):
+    texts = [plain(block.text) for block in how_sure.write(results).blocks if isinstance(block, Text)]
+    claim = plain(of_assumed_teeth(results).claim)
+    assert f"On page 1: {claim}. The table of results above has perfect teeth." in texts
