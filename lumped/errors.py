@@ -104,6 +104,10 @@ class SlowPairError(NumericalError):
     """A mesh cycle lasts more vibrations than a run can follow: the pair moves as if it stood still."""
 
 
+class UnsettledError(NumericalError):
+    """No run with unilateral contact comes to a periodic motion: the pair beats, is chaotic, or grows."""
+
+
 class StorageError(SpurcheckError, OSError):
     """A result cannot be written; the text names the path, the reason and what to do."""
 

@@ -104,9 +104,9 @@ def finer(model: Model) -> Model:
     return model.but(table=4 * model.table)
 
 
-def record(model: Model, settings: Settings) -> Curves:
-    """All curves of the motion, at the sample times."""
-    table = table_of(model)
+def record(model: Model, settings: Settings, table: np.ndarray | None = None) -> Curves:
+    """All curves of the motion, at the sample times; ``table`` by default that of the model."""
+    table = table_of(model) if table is None else table
     ratio = model.line.base_radius_g / model.line.base_radius_p
     numbers = numbers_of(model, model.torque * ratio)
     numbers["phase"] = settings.phase

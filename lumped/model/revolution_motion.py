@@ -56,6 +56,7 @@ class Origin(Enum):
 
     LINEAR = "near the linear motion"
     SETTLED = "a run settles to it"
+    NEIGHBOUR = "followed from a neighbouring torque or speed"
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,11 +15,11 @@ from lumped.labelling import provenance
 from lumped.model.cycle_maps import linear_motion
 from lumped.model.equations import PRINTED_EQUATIONS
 from lumped.model.linear_or_unilateral import ContactArgument, MotionForm, motion_form
+from lumped.model.neighbouring_motion import unilateral_or_followed_motion
 from lumped.model.periodic_system import Supports, supports_of
 from lumped.model.results import PlainMotion
 from lumped.model.revolution_motion import default_samples, plain_motion
 from lumped.model.solution import steady_cycle
-from lumped.model.unilateral_motion import unilateral_motion
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.meeting_teeth import period_of
 from lumped.schema.pair import GearPair
@@ -106,7 +106,7 @@ def periodic_motion(
     if form is MotionForm.LINEAR_OWN_TEETH:
         motion = linear_motion(pair, count, supports)
     else:
-        motion = unilateral_motion(pair, count, supports, progress=progress)
+        motion = unilateral_or_followed_motion(pair, count, supports, progress)
     return plain_motion(motion, partial(provenance, pair, samples_per_cycle=count, contact=contact))
 
 

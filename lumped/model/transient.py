@@ -19,6 +19,7 @@ from lumped.labelling import provenance
 from lumped.model.cycle_maps import CycleSteps, linear_motion, linear_steps, loads_of, stepped_run
 from lumped.model.linear_or_unilateral import ContactArgument, MotionForm, motion_form
 from lumped.model.momentary_load import MomentaryRuns, momentary_tables, steps_of
+from lumped.model.neighbouring_motion import unilateral_or_followed_motion
 from lumped.model.periodic_system import LTVSystem, Supports, supports_of
 from lumped.model.propagation import step_maps
 from lumped.model.revolution_motion import RevolutionMotion, Touch, plain_motion
@@ -154,7 +155,10 @@ def _unilateral_run(
     system = LTVSystem.of(pair.healthy, "full", supports=supports)
     periodic = isinstance(initial, str) and initial == "periodic"
     try:
-        steady = unilateral_motion(pair, samples, supports, settles=periodic)
+        if periodic:
+            steady = unilateral_or_followed_motion(pair, samples, supports)
+        else:
+            steady = unilateral_motion(pair, samples, supports, settles=False)
     except NumericalError:
         if periodic:
             raise

@@ -2,7 +2,7 @@
 
 - Like teeth: `Shooting` closes one mesh cycle, or up to eight, by Broyden's method, from the linear motion.
   Where this gives no stable motion, a run settles, and Broyden's method closes the motion that the run comes
-  to.
+  to. Where no run settles, `lumped.model.neighbouring_motion` follows one from another torque or speed.
 - Teeth that differ: a run settles until its start has faded (`settled_motion`).
 
 With prescribed contact teeth push in fixed windows of the path.
@@ -21,7 +21,7 @@ from typing import Self
 
 import numpy as np
 
-from lumped.errors import NumericalError
+from lumped.errors import NumericalError, UnsettledError
 from lumped.mesh.motion import Run
 from lumped.model.equations import COORDINATES
 from lumped.model.mesh_cycle import MeshCycle
@@ -423,7 +423,7 @@ class Shooting:
             cycles = settling_cycles + compared
             _, settling = self.run(unknowns, runs, cycles=cycles, recorded=compared)
             if not np.isfinite(settling.end).all():
-                raise NumericalError("The motion with unilateral contact grows without bound.")
+                raise UnsettledError("The motion with unilateral contact grows without bound.")
             starts = np.vstack([settling.states[::_OUTPUTS], settling.end]) @ self.to_relative.T
             unknowns = np.append(starts[-1], unknowns[-1])
             sizes, _ = self.scales(unknowns)
@@ -445,7 +445,7 @@ class Shooting:
                     same = abs(swing_of_motion - swing) <= _SAME_SWING * swing
                     if motion.spectral_radius <= UNSTABLE and same:
                         return replace(motion, origin=Origin.SETTLED)
-        raise NumericalError(
+        raise UnsettledError(
             f"A run with unilateral contact has not come to a motion of at most {_MOST_CYCLES} mesh cycles: "
             "it beats, is chaotic, or is damped too little. Read its branches over speed: spurcheck response."
         )
@@ -499,6 +499,7 @@ def unilateral_motion(
 
     Raises
     ------
+    UnsettledError : runs come to no periodic motion (`unilateral_or_followed_motion` then asks neighbours)
     NumericalError : no such motion is found
     """
     if pair.healthy is not pair:

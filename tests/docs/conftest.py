@@ -1,11 +1,16 @@
 """The pages of the documentation, and the blocks of code on them."""
 
+import importlib
+import inspect
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
+
+from tests.validation.check import motions
+from validation.check import check
 
 ROOT = Path(__file__).resolve().parents[2]
 #: Written by people; what the build writes is checked by the build.
@@ -52,6 +57,18 @@ def named(page: Path) -> str:
 @pytest.fixture(scope="session")
 def root() -> Path:
     return ROOT
+
+
+@pytest.fixture(autouse=True)
+def short_checks(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Pages that call ``spurcheck.check`` search explanations for two seconds: no page reads them.
+
+    Checks of the same pair share its motions. tests/validation/check judges explanations and motions.
+    """
+    of_check = importlib.import_module("validation.check.check")
+    for name in ("lumped_motion", "multibody_motion"):
+        monkeypatch.setattr(of_check, name, getattr(motions, name))
+    monkeypatch.setitem(inspect.unwrap(check).__kwdefaults__, "budget", 2.0)
 
 
 @pytest.fixture(params=PAGES, ids=named)

@@ -24,6 +24,15 @@ def plugin() -> list[str]:
 def test_the_folder_passes_and_a_softer_mesh_does_not(tmp_path):
     copy = tmp_path / "company"
     shutil.copytree(FOLDER, copy, ignore=shutil.ignore_patterns("__pycache__"))
+    # As it stands, but for the time of the search for explanations, which no test of the folder reads.
+    tests = copy / "test_company_model.py"
+    short = (
+        tests.read_text()
+        .replace(", budget=20.0)", ")")
+        .replace('"mypair.toml")', '"mypair.toml", budget=1.0)')
+    )
+    assert short.count("budget=1.0") == short.count("@pytest.mark.spurcheck(") == 2
+    tests.write_text(short)
     environment = os.environ | {"PYTHONPATH": str(ROOT), "PYTHONDONTWRITEBYTECODE": "1"}
     command = [sys.executable, "-m", "pytest", "-q", *plugin()]
 

@@ -20,7 +20,14 @@ from lumped.errors import refuse
 from lumped.schema.bodies import bodies_of
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray, IntArray
-from validation.check.quantities import DISPLACEMENTS_TOO_MUCH, PAIR_LABELS, QUANTITIES, Quantity, quantity_of
+from validation.check.quantities import (
+    DISPLACEMENTS_TOO_MUCH,
+    MISTAKEN,
+    PAIR_LABELS,
+    QUANTITIES,
+    Quantity,
+    quantity_of,
+)
 from validation.signals.complex_orders import ComplexOrders, orders_of_period
 
 
@@ -65,10 +72,33 @@ class MotionCurves:
             values = self._derivative(values, kind.derivative)
         if quantity.startswith("mesh_torque"):
             values = self._mesh_torque(kind, values)
+        if quantity in MISTAKEN:
+            values = self._mistaken(quantity, values)
+        if quantity.startswith("|"):
+            values = np.abs(values)
         if quantity in DISPLACEMENTS_TOO_MUCH:
             share = DISPLACEMENTS_TOO_MUCH[quantity]
             values = values + share.pinion * self.motion["x_p"].to_numpy()
             values = values + share.gear * self.motion["x_g"].to_numpy()
+        return values
+
+    def _mistaken(self, quantity: str, values: FloatArray) -> FloatArray:
+        """What a quantity is mistaken for, of the samples of its variable."""
+        g = self.pair.geometry
+        if quantity == "dte less the static one":  # prescribed contact of perfect teeth: F/K
+            force = self.pair.operating.pinion_torque / g.base_radius_pinion
+            return np.asarray(self.motion["dte"].to_numpy() - force / values)
+        if quantity == "mesh force of the springs":
+            return np.asarray(self.motion["dte"].to_numpy() * values)
+        if quantity == "dte on the pitch circles":
+            displaced = self.motion["x_p"].to_numpy() - self.motion["x_g"].to_numpy()
+            return np.asarray((values - displaced) / np.cos(g.operating_pressure_angle) + displaced)
+        if quantity.startswith("resultant"):
+            across = self.motion[f"bearing_force_y_{quantity[-1]}"].to_numpy()
+            return np.asarray(np.hypot(values, across))
+        if quantity == "equal share of the load":
+            touches = self.motion["contact"].to_numpy() > 0
+            return np.asarray(touches * values.sum(axis=0) / np.maximum(touches.sum(axis=0), 1))
         return values
 
     def mean_cycle(self) -> MotionCurves:

@@ -87,8 +87,8 @@ GEARS = (("p", "pinion"), ("g", "gear"))
 LINES = (("x", "along the line of action"), ("y", "off the line of action"))
 #: Name -> quantity.
 QUANTITIES = {quantity.name: quantity for quantity in _quantities()}
-#: What a transmission error is mistaken for: name -> quantity. No channel bears these names.
-MISTAKEN_ERRORS = {
+#: What a transmission error or a force is mistaken for: name -> quantity. No channel bears these names.
+MISTAKEN = {
     quantity.name: quantity
     for quantity in (
         Quantity("dte of the rotations", "m", "transmission error without the displacements", "dte"),
@@ -103,6 +103,29 @@ MISTAKEN_ERRORS = {
             "dte without the pinion's", "m", "transmission error without the pinion's displacement", "dte"
         ),
         Quantity("dte with a sum", "m", "transmission error with the sum of the displacements", "dte"),
+        Quantity("dte less the static one", "m", "transmission error less the static one", "mesh_stiffness"),
+        Quantity(
+            "dte on the pitch circles", "m", "transmission error with rotations on pitch circles", "dte"
+        ),
+        Quantity(
+            "mesh force of the springs", "N", "mesh force without that of the dampers", "mesh_stiffness"
+        ),
+        *(
+            Quantity(
+                f"resultant bearing force {end}",
+                "N",
+                f"magnitude of the bearing force on the {gear}",
+                f"bearing_force_x_{end}",
+            )
+            for end, gear in GEARS
+        ),
+        Quantity(
+            "equal share of the load",
+            "N",
+            "equal share of the mesh force for each tooth pair in contact",
+            "normal_load",
+            of_tooth_pair=True,
+        ),
     )
 }
 
@@ -130,8 +153,11 @@ DISPLACEMENTS_TOO_MUCH = {
 
 
 def quantity_of(name: str) -> Quantity:
-    """Return the quantity of a name, or what a transmission error is mistaken for."""
-    return MISTAKEN_ERRORS[name] if name in MISTAKEN_ERRORS else QUANTITIES[name]
+    """Return the quantity of a name, or what it is mistaken for; "|name|" is the magnitude of a quantity."""
+    if name.startswith("|"):
+        true = quantity_of(name.strip("|"))
+        return replace(true, name=name, words=f"magnitude of the {true.words}")
+    return MISTAKEN[name] if name in MISTAKEN else QUANTITIES[name]
 
 
 #: Labels of tooth pairs: B follows A one pitch later.

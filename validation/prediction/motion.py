@@ -21,7 +21,7 @@ import xarray as xr
 
 from lumped.display.progress import reported_to, shows_progress
 from lumped.display.result import DisplayedResult
-from lumped.errors import NumericalError, typed_errors
+from lumped.errors import NumericalError, UnsettledError, typed_errors
 from lumped.model.periodic_system import Supports, with_supports
 from lumped.model.results import PlainMotion, peak_to_peak, plain
 from lumped.model.revolution_motion import Origin
@@ -51,6 +51,7 @@ class Motion(Enum):
 
     UNILATERAL = "the motion with unilateral contact"
     SETTLED = "the motion with unilateral contact to which a run settles"
+    FOLLOWED = "the motion with unilateral contact that is followed from a neighbouring torque or speed"
     LINEAR = "the linear motion, in which teeth may pull"
     SECOND = "the motion of the multibody model"
 
@@ -58,6 +59,10 @@ class Motion(Enum):
     def text(self) -> str:
         """The phrase that a user reads."""
         return self.value
+
+
+#: Kind of a motion of like teeth, by the attribute ``origin`` of the motion.
+_KINDS = {Origin.SETTLED.value: Motion.SETTLED, Origin.NEIGHBOUR.value: Motion.FOLLOWED}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -75,6 +80,8 @@ class Prediction(DisplayedResult):
     mesh_cycles : mesh cycles in the period of the motion
     losses : mean power lost at each place of ``PLACES`` [W]; empty: the motion is not periodic
     reason : why the linear motion stands in for the motion with unilateral contact; empty: it does not
+    roams : whether runs with unilateral contact came to no motion that repeats: they beat, are chaotic, or
+        grow. The numbers are then those of a motion followed from a neighbour, or of the linear motion
     """
 
     shown: ClassVar = (
@@ -125,6 +132,7 @@ class Prediction(DisplayedResult):
     mesh_cycles: int
     losses: Mapping[str, float]
     reason: str = ""
+    roams: bool = False
 
     @property
     def cycle(self) -> xr.Dataset:
@@ -333,8 +341,9 @@ def predicted(
             motion = periodic_motion(pair, "unilateral", samples_per_cycle=samples, progress=progress)
     except NumericalError as error:
         return _stand_in(pair, samples, error)
-    settled = pair.healthy is pair and motion.attributes.get("origin") == Origin.SETTLED.value
-    return _of_plain(pair, motion, Motion.SETTLED if settled else Motion.UNILATERAL)
+    kind = _KINDS.get(str(motion.attributes.get("origin"))) if pair.healthy is pair else None
+    prediction = _of_plain(pair, motion, kind or Motion.UNILATERAL)
+    return replace(prediction, roams=True) if kind is Motion.FOLLOWED else prediction
 
 
 def _stand_in(pair: GearPair, samples: int | None, error: NumericalError) -> Prediction:
@@ -343,7 +352,7 @@ def _stand_in(pair: GearPair, samples: int | None, error: NumericalError) -> Pre
         linear = _of_plain(pair, periodic_motion(pair, samples_per_cycle=samples), Motion.LINEAR)
     except NumericalError:
         raise error from None
-    return replace(linear, reason=str(error))
+    return replace(linear, reason=str(error), roams=isinstance(error, UnsettledError))
 
 
 def pulls(pair: GearPair, linear: xr.Dataset) -> bool:

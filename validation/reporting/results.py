@@ -236,6 +236,9 @@ class Results:
         run = self.check.multibody.get("exact")
         if run is None:
             return Absent(Outcome.NOT_ASKED)
+        if not self.check.periodic:
+            # One mesh cycle of a run that beats or is chaotic is no motion; it may not even touch.
+            return Absent(Outcome.FAILED, "The run of the second program comes to no motion that repeats.")
         period = self.pair.geometry.mesh_period
         last = run.sel(time=slice(float(run["time"][-1]) - 1.000001 * period, None)).isel(time=slice(1, None))
         return measured(self.pair, last, Motion.SECOND)

@@ -24,12 +24,15 @@ def second_program_words(results: Results) -> str:
 def _agreement_words(results: Results) -> str:
     check = results.check
     second = results.second
-    if isinstance(check, Absent) or isinstance(second, Absent):
-        return "Not checked: the second program does not run here; its chapter says why."
-    if check.verdict is Verdict.NOT_CHECKED:
-        return "The equations are; the second program has no motion to compare."
+    absent = "Not checked: the second program does not run here; its chapter says why."
+    if isinstance(check, Absent):
+        return absent
     if check.verdict is Verdict.FAILS:
         return "No: a check of the program fails."
+    if check.verdict is Verdict.NOT_CHECKED:
+        return "The equations are; the second program has no motion to compare."
+    if isinstance(second, Absent):
+        return absent
     largest = _largest_difference(
         results.like, second, "" if results.pair.shafts is None else " on the shafts"
     )

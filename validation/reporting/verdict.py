@@ -10,7 +10,7 @@ from typing import NamedTuple
 from floquet.gear.response import Jump
 from validation.check.record.channel import Record
 from validation.files.formatting import number, quantity
-from validation.prediction.motion import Prediction
+from validation.prediction.motion import Motion, Prediction
 from validation.prediction.resonance import Resonance
 from validation.reporting.facts import Fact, rpm, spread_words
 from validation.reporting.relations import failed_checks
@@ -20,6 +20,8 @@ from validation.reporting.results import SHORT, Results
 ABSOLUTE = 0.10
 #: A jump or an unstable speed nearer than this share of the operating speed counts as at it.
 NEAR = 0.05
+#: Sentence on the numbers of a pair without a motion with unilateral contact.
+STANDS_IN = "The numbers are those of the linear motion, in which teeth may pull."
 #: Numbers of page 1 that have a range.
 RANGED = ("dte_peak_to_peak", "dynamic_factor", "tooth_load", "bearing_rms", "efficiency")
 
@@ -63,7 +65,7 @@ def verdict_of(results: Results, facts: Mapping[str, Fact]) -> Judgement:
     if reason := results.prediction.reason:
         text = f"No motion with unilateral contact was found: {reason}"
         headline = f"{Verdict.UNCERTAIN.value}: the linear motion stands in."
-        return Judgement(Verdict.UNCERTAIN, headline, f"{text} The numbers are those of the linear motion.")
+        return Judgement(Verdict.UNCERTAIN, headline, f"{text} {STANDS_IN}")
     running = running_words(results, facts)
     doubt = _doubt(results, facts)
     confirmed = record is not None and record.verdict is Record.CONFIRMS
@@ -161,6 +163,8 @@ def _danger(results: Results, facts: Mapping[str, Fact]) -> _Danger | None:
     near = hazard if hazard is not None and abs(hazard.speed_rpm / speed - 1.0) <= NEAR else None
     if results.teeth_apart:
         return _Danger(facts["contact"].claim, f"{_rises(prediction)} {_like_teeth(results)}")
+    if prediction.roams:
+        return _Danger("runs come to no motion that repeats", _roams(prediction))
     if results.contact_lost:
         place = ""
         if near is not None:
@@ -182,6 +186,18 @@ def _danger(results: Results, facts: Mapping[str, Fact]) -> _Danger | None:
         words = f"The operating speed is {rpm(speed)}. {_roaming_words(results)}"
         return _Danger(f"{near.words} at {rpm(near.speed_rpm)}", words.strip())
     return None
+
+
+def _roams(prediction: Prediction) -> str:
+    """Sentences on a pair whose runs do not settle: why, and whose the numbers are."""
+    if prediction.motion is not Motion.FOLLOWED:
+        return f"{prediction.reason} {STANDS_IN}"
+    size = quantity(prediction.peak_to_peak, "m", 3)
+    return (
+        "A run from the linear motion beats or is chaotic. Beside it a stable motion was found from a "
+        f"neighbouring torque or speed; its transmission error is {size}, and the numbers are its. How the "
+        "speed was reached decides which of the two runs."
+    )
 
 
 def _rises(prediction: Prediction) -> str:

@@ -147,10 +147,10 @@ def clearance(gear, mate, centre):
 
 
 def test_interference_is_found_as_by_brute_force():
-    """20 random small pairs, as many of each kind, whose clearance is not too near 0 for polygons to call."""
+    """8 random small pairs, as many of each kind, whose clearance is not too near 0 for polygons to call."""
     seed = 20261128
     rng = np.random.default_rng(seed)
-    missing = {False: 10, True: 10}
+    missing = {False: 4, True: 4}
     while any(missing.values()):
         z = int(rng.integers(7, 20)), int(rng.integers(12, 60))
         shift = float(rng.uniform(-0.3, 0.25)), float(rng.uniform(-0.2, 0.3))

@@ -27,6 +27,8 @@ CASES = [
     ("contact_ratio_2_3_on_shafts", "loaded", "shafts"),
     ("contact_ratio_2_3_on_shafts", "prescribed", "shafts"),
 ]
+#: Kind of the deviation of each case: each form of contact has both, and each pair.
+FIRST_ORDERS = [("steps", "eccentricity")[(number // 2 + number) % 2] for number in range(len(CASES))]
 
 
 def pair_of(name, contact):
@@ -80,8 +82,10 @@ def test_without_deviation_every_quantity_is_that_of_like_teeth(name, contact, s
         assert zero_deviation.attrs[key] == pytest.approx(like.attrs[key], rel=1e-10), key
 
 
-@pytest.mark.parametrize("first_order", ["steps", "eccentricity"])
-@pytest.mark.parametrize(("name", "contact", "supports"), CASES)
+@pytest.mark.parametrize(
+    ("name", "contact", "supports", "first_order"),
+    [(*case, first_order) for case, first_order in zip(CASES, FIRST_ORDERS, strict=True)],
+)
 def test_a_femtometre_moves_no_result_by_a_millionth(name, contact, supports, first_order):
     """Every variable and number, linear and unilateral: the type of an input does not choose the model.
 

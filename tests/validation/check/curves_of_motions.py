@@ -2,9 +2,9 @@
 
 import numpy as np
 
+from tests.validation.check.motions import predicted
 from validation.check.curves import Channel, Curves
 from validation.check.quantities import QUANTITIES
-from validation.prediction.motion import predicted
 
 
 def sampled(

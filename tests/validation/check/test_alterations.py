@@ -5,12 +5,12 @@ import pytest
 
 import lumped
 from tests.unlike_pairs import unlike_pair
+from tests.validation.check.motions import lumped_motion
 from tests.validation.check.test_explanations import COULOMB, sampled
 from validation.check.explanations.cause import Variant
 from validation.check.explanations.physics import Physics, altered_elements, motion_of
 from validation.check.explanations.registry import EXPLANATIONS
 from validation.check.problem import Problem
-from validation.check.reference import lumped_motion
 
 
 @pytest.fixture(scope="module", params=["high_contact_ratio_29_47", "contact_ratio_1_1_large_shifts"])

@@ -7,11 +7,11 @@ import spurcheck
 from lumped.errors import ParameterError
 from tests.unlike_pairs import unlike_pair
 from tests.validation.check.curves_of_motions import sampled
+from tests.validation.check.motions import lumped_motion, multibody_motion
 from validation.check import Verdict, check
 from validation.check.check import Rung
 from validation.check.curves import Channel, Curves
 from validation.check.overlay import figure_data
-from validation.check.reference import lumped_motion, multibody_motion
 
 SEVERAL = ("dte", "x_p", "y_g", "bearing_force_y_p")
 NAMES = (

@@ -6,9 +6,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from tests.validation.check.motions import lumped_motion
 from tests.validation.check.written_check import CHANNELS, checked, pair, softer
 from tests.validation.commands.conftest import refused, run
-from validation.check.reference import lumped_motion
 from validation.check.words import percent
 
 

@@ -12,10 +12,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import scipy.signal
 
 import lumped
 from lumped.schema.bodies import bodies_of
 from tests.unlike_pairs import unlike_pair
+from tests.validation.check.motions import lumped_motion
 from validation.check.curves import Channel, Curves
 from validation.check.explanations.cause import Variant
 from validation.check.explanations.misreadings import causes_of_channels
@@ -23,7 +25,6 @@ from validation.check.explanations.physics import motion_of
 from validation.check.explanations.registry import EXPLANATIONS
 from validation.check.ladder import climb
 from validation.check.problem import Problem
-from validation.check.reference import lumped_motion
 
 LIMIT = 0.05
 CHANNELS = ("dte", "theta_g", "x_p", "y_g", "bearing_force_x_p")
@@ -85,6 +86,7 @@ def pairs():
         ),
         "unlike addenda": unlike.with_({"pinion.addendum": None, "gear.tip_alteration": "-0.4 mm"}),
         "contact lost": lumped.load_gear_pair("nasa_art_25_31").healthy,
+        "shifted": unlike_pair("contact_ratio_1_1_large_shifts").with_(COULOMB),
         "on shafts": unlike_pair("contact_ratio_2_3_on_shafts").with_(COULOMB),
     }
 
@@ -135,6 +137,13 @@ FIXED = {
     "part of the relief ignored": ("both relieved", "of the gear"),
     "shape of the relief": ("relieved", None),
     "tips exchanged": ("unlike addenda", "addenda"),
+    "values of one for both": ("unlike", "masses of the pinion"),
+    "formula of the mesh damper": ("unlike", "masses of translation"),
+    "zones of contact": ("unlike", "zones exchanged"),
+    "line of action": ("shifted", "of the rack"),
+    "parts of the compliance": ("energy", "no foundation"),
+    "table of the stiffness": ("unlike", 8),
+    "peak at the pitch point": ("unlike", None),
 }
 #: Further fixed values of these causes: name of the cause, label.
 FURTHER = (
@@ -156,6 +165,20 @@ FURTHER = (
     ("friction over the path", "total load on the newest pair"),
     ("tips exchanged", "without shifts"),
     ("number of teeth", "gear: -2"),
+    ("friction over the path", "static load"),
+    ("friction over the path", "equal shares of the load"),
+    ("lever arms of friction", "from both ends"),
+    ("lever arms of friction", "from the pitch point"),
+    ("lever arms of friction", "base radii"),
+    ("zones of contact", "circular pitch, about the middle"),
+    ("table of the stiffness", -12),
+    ("supports", "rigid gear"),
+    ("supports", "rigid across"),
+    ("damper law", "constant for each pair"),
+    ("values of one for both", "masses of the gear"),
+    ("stiffness over the mesh cycle", "two harmonics"),
+    ("bearing damping left out", "left out, along"),
+    ("radius of the discs", "root circle"),
 )
 FREE = {
     "mesh stiffness": 1.17,
@@ -213,6 +236,10 @@ FREE = {
     "lag of the stiffness": 0.08,
     "place of the path of contact": 0.2,
     "damping of the masses": 0.05,
+    "peak of the parabola": 0.3,
+    "contact ratio": 0.15,
+    "end of the path of contact": -0.2,
+    "start of the path of contact": 0.15,
 }
 #: Pairs of free parameters that the pair "unlike" does not have.
 PAIR_OF = {
@@ -227,7 +254,7 @@ PAIR_OF = {
 ALWAYS = ("sign of a channel", "mesh stiffness", "torque", "friction sign", "mesh damping")
 #: Rivals of a cause: so many entries of the registry before it and behind it.
 NEAR = 3
-#: Cases that try the whole registry.
+#: Cases that try the whole registry, with one value each.
 WHOLE = ("friction over the path", "mass of the gear", "delay of a channel")
 READINGS = {
     "sign of a channel": lambda curves: changed(curves, ("y_g",), lambda v: -v),
@@ -244,6 +271,8 @@ READINGS = {
     ),
     "axes of all channels": lambda curves: turned(curves, -20.0, *AXES),
     "low-pass filter": lambda curves: changed(curves, CHANNELS, low_passed),
+    "low-pass filter of second order": lambda curves: changed(curves, CHANNELS, butterworth),
+    "filter of a channel": lambda curves: changed(curves, ("bearing_force_x_p",), butterworth),
     "low-pass filter both ways": lambda curves: changed(curves, CHANNELS, butterworth_both_ways),
     "high-pass filter": lambda curves: changed(curves, CHANNELS, high_passed),
     "zero of a channel": lambda curves: changed(curves, ("x_p",), lambda v: v + 3.0 * np.ptp(v)),
@@ -279,6 +308,14 @@ def low_passed(values, cutoff=3.0, cycles=2):
     """Values through a low-pass filter of first order, by their Fourier series."""
     orders = np.fft.rfftfreq(values.size, cycles / values.size)
     return np.fft.irfft(np.fft.rfft(values) / (1.0 + 1j * orders / cutoff), values.size)
+
+
+def butterworth(values, cutoff=2.5, cycles=2):
+    """Values through an analogue Butterworth filter of second order of scipy, at mesh orders."""
+    numerator, denominator = scipy.signal.butter(2, cutoff, analog=True)
+    orders = np.fft.rfftfreq(values.size, cycles / values.size)
+    gains = scipy.signal.freqs(numerator, denominator, orders)[1]
+    return np.fft.irfft(np.fft.rfft(values) * gains, values.size)
 
 
 def butterworth_both_ways(values, cutoff=2.5, cycles=2):
@@ -321,18 +358,19 @@ def turned(curves, degrees, *axes):
     return replace(curves, channels=tuple(replace(c, values=values[c.name]) for c in curves.channels))
 
 
-def rivals(name, problem):
+def rivals(name, problem, whole=False):
     """The cause and the causes that it is tried beside; None: the whole registry."""
-    if name in WHOLE:
+    if whole:
         return None
     listed = list(EXPLANATIONS)
     place = listed.index(name)
     chosen = {*listed[max(place - NEAR, 0) : place + NEAR + 1], *ALWAYS}
     causes = [EXPLANATIONS[one] for one in listed if one in chosen]
-    return [*causes, *causes_of_channels(problem)] if "delay of a channel" in chosen else causes
+    of_channels = {"delay of a channel", "filter of a channel"} & chosen
+    return [*causes, *causes_of_channels(problem)] if of_channels else causes
 
 
-def climbed(problem, shared, pair_name, name, most_motions=300):
+def climbed(problem, shared, pair_name, name, most_motions=300, whole=False):
     """The ladder of a problem beside the rivals of a cause, with the motions of its pair."""
     return climb(
         problem,
@@ -340,7 +378,7 @@ def climbed(problem, shared, pair_name, name, most_motions=300):
         budget=600.0,
         motions=shared.setdefault(pair_name, {}),
         most_motions=most_motions,
-        causes=rivals(name, problem),
+        causes=rivals(name, problem, whole),
     )
 
 
@@ -414,7 +452,7 @@ def test_fixed_value(name, pairs, shared):
         curves = replace(curves, places=sampled(motion, channels).places)
     problem = Problem.of(pair, curves, motion)
     most = 12 if pair_name in ("eccentric", "on shafts", "contact lost") else 300
-    assert says(climbed(problem, shared, pair_name, name, most), name)
+    assert says(climbed(problem, shared, pair_name, name, most, name in WHOLE), name)
 
 
 @pytest.mark.parametrize("name", FREE)
@@ -427,7 +465,8 @@ def test_free_factor_is_recovered(name, pairs, shared):
     # A bearing in one direction is told by the displacement of its gear in this direction.
     channels = (*CHANNELS, "x_g", "y_p") if name.endswith(("along", "across")) else CHANNELS
     curves = sampled(other, channels)
-    ladder = climbed(Problem.of(pair, curves, lumped_motion(pair)), shared, pair_name, name)
+    problem = Problem.of(pair, curves, lumped_motion(pair))
+    ladder = climbed(problem, shared, pair_name, name, whole=name in WHOLE)
     assert says(ladder, name)
     if ladder.steps[0].name == name:
         assert ladder.steps[0].factor == pytest.approx(cause.shown(FREE[name]), rel=0.02)
@@ -462,7 +501,8 @@ def test_reading(name, pairs, shared):
     motion = lumped_motion(pair)
     both = ("dte", *(one for axes in AXES for one in axes)) if name.startswith("axes") else CHANNELS
     curves = READINGS[name](sampled(motion, both))
-    assert says(climbed(Problem.of(pair, curves, motion), shared, "unlike", name), name)
+    problem = Problem.of(pair, curves, motion)
+    assert says(climbed(problem, shared, "unlike", name, whole=name in WHOLE), name)
 
 
 @pytest.mark.parametrize(
@@ -486,6 +526,47 @@ def test_transmission_error_of_other_displacements(words, share_pinion, share_ge
     wrong = changed(curves, ("dte",), lambda v: error)
     ladder = climbed(Problem.of(pair, wrong, motion), shared, "unlike", "another quantity")
     assert [step.name for step in ladder.steps] == ["another quantity"]
+    assert words in ladder.steps[0].sentence
+
+
+@pytest.mark.parametrize(
+    ("name", "words", "share"),
+    [
+        ("mesh_force", "without the dampers", None),
+        ("dte", "less the static one", None),
+        ("dte", "rotations on the pitch circles", None),
+        ("bearing_force_y_p", "the resultant of both directions", None),
+        ("y_g", "the magnitude, without sign", None),
+        ("mesh_force", "per millimetre of face width", 1e-3),
+    ],
+)
+def test_channel_that_holds_another_quantity(name, words, share, pairs, shared):
+    """Values by hand: K delta, delta - F/K, rotations times 1/cos(alpha), the hypotenuse, |y|, F/b."""
+    pair = pairs["unlike"]
+    g = pair.geometry
+    motion = lumped_motion(pair)
+    names = ("dte", "x_p", "x_g", "y_g", "mesh_force", "bearing_force_x_p", "bearing_force_y_p")
+    curves = sampled(motion, (*names, "mesh_stiffness"))
+    values = {channel.name: channel.values for channel in curves.channels}
+    curves = replace(curves, channels=curves.channels[:-1])
+    force = pair.operating.pinion_torque / g.base_radius_pinion
+    displaced = values["x_p"] - values["x_g"]
+    rotations = values["dte"] - displaced
+    wrong = {
+        "without the dampers": values["mesh_stiffness"] * values["dte"],
+        "less the static one": values["dte"] - force / values["mesh_stiffness"],
+        "rotations on the pitch circles": rotations / np.cos(g.operating_pressure_angle) + displaced,
+        "the resultant of both directions": np.hypot(
+            values["bearing_force_x_p"], values["bearing_force_y_p"]
+        ),
+        "the magnitude, without sign": np.abs(values["y_g"]),
+        "per millimetre of face width": values["mesh_force"] * 1e-3 / g.face_width,
+    }[words]
+    changed_curves = changed(curves, (name,), lambda v: wrong)
+    problem = Problem.of(pair, changed_curves, motion)
+    cause = "radius of a channel" if share else "another quantity"
+    ladder = climbed(problem, shared, "unlike", cause)
+    assert [step.name for step in ladder.steps] == [cause]
     assert words in ladder.steps[0].sentence
 
 

@@ -7,6 +7,7 @@ import pytest
 
 import lumped
 from tests.unlike_pairs import unlike_pair
+from tests.validation.check.motions import lumped_motion
 from tests.validation.check.test_explanations import COULOMB, LIMIT, changed, sampled
 from validation.check.curves import Channel
 from validation.check.explanations.cause import Variant
@@ -14,7 +15,6 @@ from validation.check.explanations.physics import Physics, motion_of
 from validation.check.explanations.registry import EXPLANATIONS
 from validation.check.ladder import climb
 from validation.check.problem import Problem
-from validation.check.reference import lumped_motion
 from validation.check.search import Search, residual_of
 from validation.check.words import ladder_words
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import lumped
+from tests.validation.check.motions import lumped_motion
 from tests.validation.check.test_explanations import COULOMB, sampled
 from validation.check.mesh_frequency import mesh_frequency
-from validation.check.reference import lumped_motion
 
 
 @pytest.fixture(scope="module")

@@ -7,13 +7,13 @@ import pytest
 
 from tests.unlike_pairs import unlike_pair
 from tests.validation.check.curves_of_motions import sampled
+from tests.validation.check.motions import lumped_motion
 from validation.check.curve_orders import ChannelOrders, drift, without_ramp
 from validation.check.curves import Channel, Curves
 from validation.check.mesh_frequency import mesh_frequency
 from validation.check.misfit import ChannelMisfit, Misfit, static_value
 from validation.check.problem import Problem
 from validation.check.quantities import quantity_of
-from validation.check.reference import lumped_motion
 from validation.check.settled import settled
 from validation.signals.complex_orders import ComplexOrders
 

@@ -5,6 +5,7 @@ import os
 import shlex
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -46,17 +47,19 @@ def test_cells_of_a_table_have_digits_and_units(capsys):
     ]  # fmt: skip
 
 
+@cache
+def presets_in(**variables):
+    """What ``spurcheck presets`` prints with these variables of the environment, and no other COLUMNS."""
+    environment = {name: value for name, value in os.environ.items() if name != "COLUMNS"} | variables
+    command = [sys.executable, "-m", "spurcheck", "presets"]
+    return subprocess.run(command, env=environment, capture_output=True, text=True, check=True).stdout
+
+
 @pytest.mark.parametrize("columns", ["0", "1", "-3"])
 def test_a_terminal_without_columns_hides_nothing(columns):
     """Some terminals and job schedulers set COLUMNS=0: every table was empty, and the exit code 0."""
-
-    def printed(**variables):
-        environment = {name: value for name, value in os.environ.items() if name != "COLUMNS"} | variables
-        command = [sys.executable, "-m", "spurcheck", "presets"]
-        return subprocess.run(command, env=environment, capture_output=True, text=True, check=True).stdout
-
-    assert printed(COLUMNS=columns) == printed()
-    assert "nasa_28_28" in printed()
+    assert presets_in(COLUMNS=columns) == presets_in()
+    assert "nasa_28_28" in presets_in()
 
 
 @pytest.mark.parametrize("text", TEXTS)

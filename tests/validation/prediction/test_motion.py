@@ -245,3 +245,23 @@ def test_progress_is_told_while_the_motion_is_computed(name):
     assert told[-1] == 1.0
     assert len(told) >= 4
     assert all(before < after for before, after in itertools.pairwise(told))
+
+
+def test_a_stable_motion_beside_chaos_is_followed_and_said_to_be_one_of_several():
+    """25/31 with little damping: runs from the linear motion do not settle, `tests/lumped/model`."""
+    changes = {"mesh.damping_ratio": 0.00858, "operating.pinion_speed": "9560.63 rpm"}
+    prediction = predicted(lumped.load_gear_pair("nasa_art_25_31").with_(changes))
+    assert prediction.motion is Motion.FOLLOWED
+    assert prediction.roams
+    assert prediction.stable
+    assert prediction.contact_lost
+    assert not prediction.reason
+
+
+def test_the_linear_motion_of_a_pair_that_roams_is_said_to_stand_in():
+    changes = {"mesh.damping_ratio": 0.00742, "operating.pinion_speed": "4579.19 rpm"}
+    pair = lumped.load_gear_pair("nasa_art_25_31").with_(changes)
+    prediction = predicted(pair)
+    assert (prediction.motion, prediction.roams) == (Motion.LINEAR, True)
+    slow = predicted(loaded("nasa_28_28").with_({"operating.pinion_speed": "1 rpm"}))
+    assert (slow.motion, slow.roams) == (Motion.LINEAR, False)

@@ -19,6 +19,7 @@ from tests.validation.reporting.written import SMALL, known, pair, plain
 from validation.exchange import new_pair
 from validation.files.formatting import prose, read_table
 from validation.prediction.inputs import kind_of
+from validation.prediction.motion import Motion
 from validation.prediction.uncertainty import LONG_STEP, _peaks
 from validation.reporting.blocks import Badge
 from validation.reporting.build import findings
@@ -625,3 +626,22 @@ def test_more_information_never_gives_a_worse_verdict(what):
     vars(more.prediction)["mesh_force"] = np.append(more.prediction.mesh_force, 0.0)
     assert page_one(more).headline == "Do not run here: the teeth lose contact."
     assert "contact" in findings(more)
+
+
+@pytest.mark.parametrize("motion", [Motion.FOLLOWED, Motion.LINEAR])
+def test_a_pair_whose_runs_do_not_settle_must_not_run_here(motion):
+    """Whose the numbers are: those of a stable motion beside chaos, or of the linear motion."""
+    less = _not_varied()
+    results = Results(less.pair, less.effort)
+    results.__dict__ |= {name: vars(less)[name] for name in ("check", "chart", "like") if name in vars(less)}
+    reason = "" if motion is Motion.FOLLOWED else "A run has not come to a motion."
+    results.__dict__["prediction"] = replace(less.prediction, motion=motion, roams=True, reason=reason)
+    first = page_one(results)
+    assert first.verdict is Verdict.DO_NOT_RUN
+    assert first.headline == "Do not run here: runs come to no motion that repeats."
+    if motion is Motion.FOLLOWED:
+        size = f"{1e6 * less.prediction.peak_to_peak:.3g} µm"
+        assert f"its transmission error is {size}" in plain(first.reason)
+        assert "How the speed was reached decides" in first.reason
+    else:
+        assert first.reason.startswith("A run has not come to a motion. The numbers are those of the linear")

@@ -1,6 +1,7 @@
 """Does a study run on a Dask cluster as on this machine, whatever scheduler and workers do meanwhile?
 
 Scheduler and workers are processes of this machine, as a user starts them.
+tests/validation/commands/test_cluster_option.py has ranges and charts.
 """
 
 import json
@@ -15,14 +16,9 @@ from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
 
-import numpy as np
 import pytest
-import xarray as xr
 
-from floquet import stability_chart
 from lumped.errors import ParameterError
-from tests.unlike_pairs import unlike_pair
-from validation.prediction.uncertainty import uncertainty
 from validation.studies import (
     Status,
     StoreError,
@@ -265,24 +261,6 @@ def test_a_case_that_ends_its_worker_costs_itself_alone(study, tmp_path, monkeyp
     assert dict(summary.failures)[41] == "the worker process died on this case"
     again = run_sweep(study, tmp_path / "out", resume=True, retry_failed=True)
     assert again.results.read_bytes() == undisturbed
-
-
-@pytest.mark.slow
-def test_ranges_and_charts_are_those_of_this_process():
-    """The pair of the range loses contact; the chart has a fit at each torque."""
-    uncertain = unlike_pair("larger_gear_drives_contact_lost")
-    charted = unlike_pair("contact_ratio_1_1_large_shifts")
-    axes = {
-        "torque": [30.0, 55.0],
-        "speed_rpm": np.linspace(2000.0, 9000.0, 11),
-        "damping_ratio": np.linspace(0.0, 0.02, 7),
-    }
-    with open_cluster("local:2") as cluster:
-        ranges = uncertainty(uncertain, 16, executor=cluster)
-        chart = stability_chart(charted, axes, executor=cluster)
-    assert ranges.attrs["contact_lost"] > 0
-    xr.testing.assert_identical(ranges, uncertainty(uncertain, 16))
-    xr.testing.assert_identical(chart, stability_chart(charted, axes))
 
 
 def test_no_thread_of_a_refused_cluster_is_left(monkeypatch):

@@ -10,7 +10,9 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from validation.check.explanations.cause import Cause, Choice, Kind, Variant
-from validation.check.explanations.physics import Arms, Friction, reversal_of
+from validation.check.explanations.friction_courses import Friction, reversal_of
+from validation.check.explanations.path_alterations import may_vary
+from validation.check.explanations.physics import Arms, Bearings
 from validation.check.problem import Problem
 
 #: Trial amplitudes of a profile error, in steps of so many micrometres.
@@ -24,6 +26,13 @@ _APART = 5e-3
 _SHAPE = (-0.5, -0.2, 0.2, 0.5)
 _LAG = (-0.3, -0.1, 0.1, 0.3)
 _RAMPS = (0.03, 0.1, 0.2, 0.4)
+#: Supports of which a part is rigid, in words.
+_RIGID: dict[Bearings, str] = {
+    "rigid pinion": "of the pinion",
+    "rigid gear": "of the gear",
+    "rigid along": "along the line of action",
+    "rigid across": "across the line of action",
+}
 
 
 def _altered(label: float | str, words: str, **changes: Any) -> Choice:
@@ -112,8 +121,35 @@ def _friction_course(problem: Problem, variant: Variant) -> list[Choice]:
             "friction of the whole mesh force at the newest tooth pair",
             course="total load on the newest pair",
         ),
+        _altered(
+            "equal shares of the load",
+            "friction of equal shares of the mesh force on the pairs in contact",
+            course="equal shares of the load",
+        ),
         *_reversals(variant),
+        *_static_friction(variant),
     ]
+
+
+def _static_friction(variant: Variant) -> Iterator[Choice]:
+    """Friction by a load that does not vibrate, and the natural logarithm for the decimal one."""
+    if variant.pair.mesh.contact == "prescribed":
+        yield _altered(
+            "static load",
+            "friction by the static load, shared as the stiffness, not by the load that vibrates",
+            course="static load",
+        )
+        yield _altered(
+            "static load in equal shares",
+            "friction by the static load in equal shares, not by the load that vibrates",
+            course="static load in equal shares",
+        )
+    if variant.pair.friction.law == "benedict_kelley":
+        yield _altered(
+            "natural logarithm",
+            "the natural logarithm in place of the decimal one in the friction law",
+            course="natural logarithm",
+        )
 
 
 def _reversals(variant: Variant) -> list[Choice]:
@@ -182,9 +218,13 @@ def _arms(problem: Problem, variant: Variant) -> list[Choice]:
     texts: dict[Arms, str] = {
         "from A": "lever arms of friction that count from the start of contact, not from the line's tangent "
         "point",
+        "from A on the pinion": "a lever arm of friction on the pinion that counts from the start of contact",
+        "from both ends": "lever arms of friction that count from the start and the end of contact",
+        "from the pitch point": "lever arms of friction that count from the pitch point",
         "of the other gear": "lever arms of friction of pinion and gear exchanged",
         "at the pitch point": "lever arms of friction that stay those at the pitch point",
         "pitch radii": "pitch radii as lever arms of friction",
+        "base radii": "base radii as lever arms of friction",
     }
     return [_altered(arms, words, arms=arms) for arms, words in texts.items()]
 
@@ -216,6 +256,23 @@ def _dampers(problem: Problem, variant: Variant) -> list[Choice]:
             "one damper by the root of the stiffness of the whole mesh",
             damper="of the whole mesh",
         ),
+        _altered(
+            "constant for each pair",
+            "a constant damper for each tooth pair, the whole one of the mesh",
+            damper="constant for each pair",
+        ),
+        *(
+            [
+                _altered(
+                    "proportional, bearings too",
+                    "dampers of mesh and bearings proportional to stiffness, with the ratio of the mesh",
+                    damper="proportional",
+                    proportional_bearings=True,
+                )
+            ]
+            if variant.pair.shafts is None
+            else []
+        ),
     ]
 
 
@@ -236,21 +293,20 @@ def _over_cycle(problem: Problem, variant: Variant) -> list[Choice]:
         "whole mesh for each pair": "the stiffness of the whole mesh on each tooth pair",
         "levels exchanged": "the high and the low mesh stiffness exchanged",
         "first harmonic": "the mean and the first harmonic of the mesh stiffness",
+        "first harmonic, half the swing": "the mean of the mesh stiffness and one harmonic, with half of the "
+        "peak to peak as its amplitude",
+        "two harmonics": "the mean and two harmonics of the mesh stiffness",
         "three harmonics": "the mean and three harmonics of the mesh stiffness",
+        "five harmonics": "the mean and five harmonics of the mesh stiffness",
         "two levels": "a rectangular mesh stiffness, one value for each number of pairs in contact",
     }
-    if not _may_vary(problem, variant):
+    if not may_vary(problem, variant):
         return []
 
     def change(name: str) -> Callable[[Variant], Variant]:
         return lambda variant: variant.with_inputs(_PRESCRIBED).with_physics(stiffness=name)
 
     return [Choice(name, words, change(name)) for name, words in texts.items()]
-
-
-def _may_vary(problem: Problem, variant: Variant) -> bool:
-    """Whether the stiffness over the mesh cycle can be altered."""
-    return not variant.physics.of_stiffness and not variant.pair.mesh.stiffness.whole_mesh
 
 
 def _variation(variant: Variant, value: float) -> Variant:
@@ -284,6 +340,10 @@ def _bearings(problem: Problem, variant: Variant) -> list[Choice]:
         return []
     return [
         _altered("rigid", "rigid bearings: gears that only turn", bearings="rigid"),
+        *(
+            _altered(label, f"bearings {words} that are rigid", bearings=label)
+            for label, words in _RIGID.items()
+        ),
         _altered(
             "torsional", "a torsional model, without translations and bearing forces", bearings="left out"
         ),
@@ -321,8 +381,8 @@ def _causes() -> Iterator[Cause]:
     yield altered(
         "friction over the path",
         "another course of the friction over the path of contact",
-        "without reversal; leading or newest pair, with its load or the load of the mesh; pitch point of the "
-        "rack; middle of the path",
+        "without reversal; leading or newest pair, with its load or the load of the mesh; equal shares; "
+        "pitch point of the rack; middle of the path; static load; natural logarithm",
         _friction_course,
     )
     yield Cause(
@@ -341,7 +401,7 @@ def _causes() -> Iterator[Cause]:
     yield altered(
         "damper law",
         "another law of the dampers of the teeth",
-        "constant, proportional, root of the whole mesh",
+        "constant, proportional, root of the whole mesh, constant for each pair; bearings too",
         _dampers,
     )
     yield altered("teeth pull", "a linear mesh in place of unilateral contact", "linear", _pulling)
@@ -349,7 +409,7 @@ def _causes() -> Iterator[Cause]:
         "stiffness over the mesh cycle",
         "another course of the mesh stiffness",
         "reversed, constant, single pair, double pair, shared evenly, whole mesh for each pair, levels "
-        "exchanged, first harmonic, three harmonics, two levels",
+        "exchanged, one to five harmonics, two levels",
         _over_cycle,
     )
     yield Cause(
@@ -404,7 +464,8 @@ def _causes() -> Iterator[Cause]:
     yield altered(
         "lever arms of friction",
         "other lever arms of the friction moments",
-        "from A, of the other gear, at the pitch point, pitch radii",
+        "from A, from both ends, from the pitch point, of the other gear, at the pitch point, pitch radii, "
+        "base radii",
         _arms,
     )
     yield altered(
@@ -428,7 +489,7 @@ def _causes() -> Iterator[Cause]:
             neutral=0.0,
             change=_prescribed(field),
             words=f"{meaning}: {{value}}",
-            applies=_may_vary,
+            applies=may_vary,
         )
     yield Cause(
         name="place of the path of contact",
@@ -453,7 +514,12 @@ def _causes() -> Iterator[Cause]:
         "frequency",
         applies=lambda problem, variant: variant.pair.shafts is None,
     )
-    yield altered("supports", "rigid bearings, or a torsional model", "rigid, torsional", _bearings)
+    yield altered(
+        "supports",
+        "rigid bearings, or a torsional model",
+        "rigid: all, one gear, one direction; torsional",
+        _bearings,
+    )
     yield altered("shafts left out", "springs in place of shafts", "springs", _shafts)
 
 

@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from validation.check.curves import Channel
 from validation.check.explanations.cause import Cause, Choice, Kind, Variant
 from validation.check.explanations.reading import (
     Reading,
@@ -160,6 +161,14 @@ def _radii(problem: Problem, variant: Variant) -> list[Choice]:
                     "the angle times the ratio of the teeth": ratio,
                     "the angle over the ratio of the teeth": 1.0 / ratio,
                 }
+        elif channel.kind.unit == "N":
+            factors = {
+                "a force per millimetre of face width": 1e-3 / g.face_width,
+                "a force over the static mesh force": g.base_radius_pinion
+                / problem.pair.operating.pinion_torque,
+                "a torque on the pinion": g.base_radius_pinion,
+                "a torque on the gear": g.base_radius_gear,
+            }
         for words, factor in factors.items():
 
             def change(reading: Reading, name: str = channel.name, factor: float = factor) -> Reading:
@@ -230,7 +239,11 @@ def _other_quantities(problem: Problem, variant: Variant) -> list[Choice]:
     quantities = dict(variant.reading.quantities)
     for channel in problem.curves.channels:
         kind = quantity_of(quantities.get(channel.name, channel.quantity))
-        for words, quantity, factor in _mistaken(problem, kind):
+        mistaken = list(_mistaken(problem, kind))
+        unread = not channel.kind.is_rotation and channel.name not in quantities
+        if unread and _has_one_sign(problem, channel):
+            mistaken.append(("the magnitude, without sign,", f"|{kind.name}|", 1.0))
+        for words, quantity, factor in mistaken:
 
             def change(
                 reading: Reading, name: str = channel.name, quantity: str = quantity, factor: float = factor
@@ -257,6 +270,9 @@ def _mistaken(problem: Problem, kind: Quantity) -> Iterator[tuple[str, str, floa
         yield "no displacement of the gear", "dte without the gear's", 1.0
         yield "no displacement of the pinion", "dte without the pinion's", 1.0
         yield "the sum of both displacements in place of their difference", "dte with a sum", 1.0
+        yield "rotations on the pitch circles beside the displacements", "dte on the pitch circles", 1.0
+        if _perfect_and_prescribed(problem):
+            yield "the transmission error less the static one", "dte less the static one", 1.0
     stem = name.removesuffix("_ddot").removesuffix("_dot")
     others = [stem, f"{stem}_dot", f"{stem}_ddot"]
     nouns = ("the motion itself", "the rate", "the acceleration")
@@ -266,6 +282,7 @@ def _mistaken(problem: Problem, kind: Quantity) -> Iterator[tuple[str, str, floa
     if name.startswith("bearing_force_"):
         motion = name.removeprefix("bearing_force_")
         yield "the displacement", motion, 1.0
+        yield "the resultant of both directions", f"resultant bearing force {motion[-1]}", 1.0
         if problem.pair.shafts is None:
             bearing = getattr(problem.pair.bearings, "pinion" if motion.endswith("_p") else "gear")
             stiffness = bearing.loa_stiffness if motion.startswith("x") else bearing.oloa_stiffness
@@ -274,8 +291,25 @@ def _mistaken(problem: Problem, kind: Quantity) -> Iterator[tuple[str, str, floa
         yield "the bearing force", f"bearing_force_{stem}", 1.0
     if name == "mesh_force":
         yield "the friction force", "friction", 1.0
+        if _perfect_and_prescribed(problem):
+            yield "stiffness times deflection, without the dampers", "mesh force of the springs", 1.0
+    if name == "normal_load":
+        yield "the mesh force in equal shares", "equal share of the load", 1.0
     if name.startswith("mesh_torque"):
         yield "the mesh force", "mesh_force", 1.0
+
+
+def _perfect_and_prescribed(problem: Problem) -> bool:
+    """Whether the mesh force of the springs is the stiffness of the mesh times the transmission error."""
+    pair = problem.pair
+    return pair.mesh.contact == "prescribed" and pair.healthy is pair
+
+
+def _has_one_sign(problem: Problem, channel: Channel) -> bool:
+    """Whether a channel has one sign only and our motion has both: the channel may be a magnitude."""
+    ours = problem.motion.samples(channel.quantity) if problem.motion.has(channel.quantity) else np.zeros(1)
+    least, most = float(channel.values.min()), float(channel.values.max())
+    return least * most >= 0.0 and float(ours.min()) * float(ours.max()) < 0.0
 
 
 def _most_orders(problem: Problem, variant: Variant) -> list[Choice]:
@@ -352,22 +386,34 @@ def _time_axis(problem: Problem, variant: Variant) -> list[Choice]:
 
 
 def causes_of_channels(problem: Problem) -> list[Cause]:
-    """Return the free causes of each channel: its delay against all other channels."""
-    channels = problem.curves.channels
+    """Return the free causes of each channel and family: a delay against the others, a filter of its own."""
+    groups = _groups(problem)
+    every = len(problem.curves.channels)
 
-    def late(name: str) -> Callable[[Variant, float], Variant]:
-        return lambda variant, value: variant.with_reading(variant.reading.with_delay(name, value))
+    def late(names: Sequence[str]) -> Callable[[Variant, float], Variant]:
+        return lambda variant, value: variant.with_reading(variant.reading.with_delay(names, value))
 
+    def filtered(names: Sequence[str]) -> Callable[[Variant, float], Variant]:
+        return lambda variant, value: variant.with_reading(variant.reading.with_filter(names, value))
+
+    def of_group(cause: Cause, words: str, change: Callable[[Variant, float], Variant], part: str) -> Cause:
+        return replace(cause, words=words, change=change, applies=lambda problem, variant: True, part=part)
+
+    some = {words: names for words, names in groups.items() if len(names) < every}
     return [
-        replace(
-            DELAY,
-            words=f"the channel {channel.name} {{value}} mesh cycles late against the others",
-            change=late(channel.name),
-            applies=lambda problem, variant: True,
-            part=channel.name,
-        )
-        for channel in channels
-        if len(channels) > 1
+        *(
+            of_group(DELAY, f"{words} {{value}} mesh cycles late against the others", late(names), words)
+            for words, names in some.items()
+        ),
+        *(
+            of_group(
+                FILTER,
+                f"a low-pass filter of second order of {words} alone, at {{value}} mesh orders",
+                filtered(names),
+                words,
+            )
+            for words, names in some.items()
+        ),
     ]
 
 
@@ -384,10 +430,23 @@ def _has_axes_to_turn(problem: Problem, variant: Variant) -> bool:
 DELAY = Cause(
     name="delay of a channel",
     kind=Kind.READING,
-    meaning="one channel late against the others, as by a filter",
+    meaning="one channel, or a family of channels, late against the others, as by a filter",
     span="-0.2 to 0.2 mesh cycles",
     grid=_DELAY,
     neutral=0.0,
+    applies=lambda problem, variant: False,
+)
+
+
+#: A filter of some channels; ``causes_of_channels`` makes one cause for each of their groups.
+FILTER = Cause(
+    name="filter of a channel",
+    kind=Kind.READING,
+    meaning="one channel, or a family of channels, through a low-pass filter of second order",
+    span="cutoff at 0.5 to 8 mesh orders and above",
+    grid=_TIME_CONSTANT,
+    neutral=0.0,
+    shown=lambda value: 1.0 / max(value, 1e-300),
     applies=lambda problem, variant: False,
 )
 
@@ -450,6 +509,17 @@ def _causes() -> Iterator[Cause]:
         shown=lambda value: 1.0 / max(value, 1e-300),
     )
     yield Cause(
+        name="low-pass filter of second order",
+        kind=Kind.READING,
+        meaning="all channels through a low-pass filter of second order, as of Butterworth",
+        span="cutoff at 0.5 to 8 mesh orders and above",
+        grid=_TIME_CONSTANT,
+        neutral=0.0,
+        change=lambda variant, value: variant.with_reading(replace(variant.reading, second_order=value)),
+        words="a low-pass filter of second order at {value} mesh orders",
+        shown=lambda value: 1.0 / max(value, 1e-300),
+    )
+    yield Cause(
         name="high-pass filter",
         kind=Kind.READING,
         meaning="all channels through a high-pass filter of first order",
@@ -502,6 +572,7 @@ def _causes() -> Iterator[Cause]:
         applies=_has_axes_to_turn,
     )
     yield DELAY
+    yield FILTER
 
 
 #: Causes that change the reading of the curves.

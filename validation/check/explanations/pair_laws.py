@@ -22,7 +22,7 @@ from lumped.schema.pair import GearPair
 from lumped.stiffness.base import RAMP
 from lumped.typing import FloatArray
 
-Damper = Literal["of each pair", "of the whole mesh", "proportional", "constant"]
+Damper = Literal["of each pair", "of the whole mesh", "proportional", "constant", "constant for each pair"]
 Stiffness = Literal[
     "",
     "reversed",
@@ -33,7 +33,10 @@ Stiffness = Literal[
     "whole mesh for each pair",
     "levels exchanged",
     "first harmonic",
+    "first harmonic, half the swing",
+    "two harmonics",
     "three harmonics",
+    "five harmonics",
     "two levels",
 ]
 #: Fit error of an altered law over its largest value.
@@ -43,6 +46,8 @@ SAME = 1e-9
 #: Places in a mesh cycle at which a stiffness is smoothed, and the harmonics of a smoothed stiffness.
 _COURSE = 2048
 _HARMONICS = 30
+#: Harmonics that a change of the stiffness keeps.
+_KEPT = {"first harmonic": 1, "two harmonics": 2, "three harmonics": 3, "five harmonics": 5}
 #: Least stiffness over its mean, where a change would make it negative.
 _LEAST_STIFFNESS = 0.02
 #: No further breaks.
@@ -53,7 +58,8 @@ def damper_factor(pair: GearPair, elements: MeshElements, law: Damper) -> Callab
     """Return the factor over xi from the damper of each pair, 2 zeta sqrt(k_i m_e), to another law.
 
     With K the sum of k_i over all pairs, each pair takes its part k_i/K of the damper of the mesh:
-    2 zeta sqrt(K m_e), proportional 2 zeta K sqrt(m_e/mean K), constant 2 zeta sqrt(mean K m_e).
+    2 zeta sqrt(K m_e), proportional 2 zeta K sqrt(m_e/mean K), constant 2 zeta sqrt(mean K m_e). A constant
+    damper for each pair is the whole of the last one.
     """
     total = total_of_pairs(pair, elements.stiffness)
     mean = mean_of_pairs(elements.stiffness, pair.geometry.base_pitch)
@@ -65,6 +71,8 @@ def damper_factor(pair: GearPair, elements: MeshElements, law: Damper) -> Callab
         under_root = {"of the whole mesh": whole, "proportional": whole**2 / mean}.get(law, mean)
         of_mesh = damping_coefficient(1.0, np.asarray(under_root + 0.0 * whole), mass)
         of_pair = damping_coefficient(1.0, stiffness, mass)
+        if law == "constant for each pair":
+            return np.asarray(of_mesh / of_pair, dtype=np.float64)
         return np.asarray(of_mesh * stiffness / whole / of_pair, dtype=np.float64)
 
     return factor
@@ -133,7 +141,7 @@ def with_stiffness(pair: GearPair, elements: MeshElements, change: Stiffness) ->
         places = low + (np.arange(_COURSE) + 0.5) / _COURSE * pitch
         both = float(total(places).max() + total(places).min())
         changed = fitted(lambda xi: stiffness(xi) * (both - total(xi)) / total(xi), pair, elements)
-    elif change in ("first harmonic", "three harmonics", "two levels"):
+    elif change == "two levels" or "harmonic" in change:
         course = _smoother(pair, stiffness, change)
         changed = fitted(lambda xi: stiffness(xi) * course(xi) / total(xi), pair, elements)
     else:
@@ -141,7 +149,7 @@ def with_stiffness(pair: GearPair, elements: MeshElements, change: Stiffness) ->
         one_pair = float(stiffness(np.array([middle]))[0])
         interval = (middle - 0.5 * count * pitch, middle + 0.5 * count * pitch)
         changed = PathFunction.constant(one_pair, *interval)
-    return _with_law(pair, elements, changed, interval)
+    return with_law(pair, elements, changed, interval)
 
 
 def with_error(
@@ -198,7 +206,7 @@ def with_lag(pair: GearPair, elements: MeshElements, lag: float) -> MeshElements
     reach = int(np.ceil((high - low) / pitch)) + 2
     breaks = np.append(stiffness.breaks, [low, high])
     moved = np.add.outer(breaks, delay + pitch * np.arange(-reach, reach + 1)).ravel()
-    return _with_law(pair, elements, fitted(late, pair, elements, further=moved), stiffness.interval)
+    return with_law(pair, elements, fitted(late, pair, elements, further=moved), stiffness.interval)
 
 
 def with_ramps(pair: GearPair, elements: MeshElements, share: float) -> MeshElements:
@@ -215,7 +223,7 @@ def with_ramps(pair: GearPair, elements: MeshElements, share: float) -> MeshElem
         return np.asarray(stiffness(xi) * RAMP(inside))
 
     ends = np.array([low + length, high - length])
-    return _with_law(pair, elements, fitted(ramped, pair, elements, further=ends), stiffness.interval)
+    return with_law(pair, elements, fitted(ramped, pair, elements, further=ends), stiffness.interval)
 
 
 def with_shape(pair: GearPair, elements: MeshElements, slope: float, curvature: float) -> MeshElements:
@@ -231,7 +239,7 @@ def with_shape(pair: GearPair, elements: MeshElements, slope: float, curvature: 
         factor = 1.0 + slope * u + curvature * u**2
         return np.asarray(stiffness(xi) * np.maximum(factor, _LEAST_STIFFNESS))
 
-    return _with_law(pair, elements, fitted(shaped, pair, elements), stiffness.interval)
+    return with_law(pair, elements, fitted(shaped, pair, elements), stiffness.interval)
 
 
 def with_variation(pair: GearPair, elements: MeshElements, factor: float) -> MeshElements:
@@ -245,13 +253,13 @@ def with_variation(pair: GearPair, elements: MeshElements, factor: float) -> Mes
         varied = np.maximum(mean + factor * (whole - mean), _LEAST_STIFFNESS * mean)
         return np.asarray(stiffness(xi) * varied / whole)
 
-    return _with_law(pair, elements, fitted(changed, pair, elements), stiffness.interval)
+    return with_law(pair, elements, fitted(changed, pair, elements), stiffness.interval)
 
 
-def _with_law(
+def with_law(
     pair: GearPair, elements: MeshElements, changed: PathFunction, interval: tuple[float, float]
 ) -> MeshElements:
-    """Element laws with another stiffness of the tooth pair, which the dampers follow, on an interval."""
+    """Return element laws with another stiffness of the tooth pair on an interval; the dampers follow it."""
     stiffness = elements.stiffness
     mass = bodies_of(pair).effective_mass
     ratio = pair.mesh.damping_ratio
@@ -283,7 +291,10 @@ def _smoother(
         levels = {float(number): float(values[count == number].mean()) for number in np.unique(count)}
         numbers, means = np.array(sorted(levels)), np.array([levels[one] for one in sorted(levels)])
         return lambda xi: np.asarray(np.interp(np.round(pairs(xi)), numbers, means), dtype=np.float64)
-    return _of_harmonics(course, np.ones(1 if change == "first harmonic" else 3))
+    if change == "first harmonic, half the swing":  # half of the peak to peak as the amplitude
+        first = np.abs(np.fft.rfft(values)[1]) * (2.0 / _COURSE)
+        return _of_harmonics(course, np.array([0.5 * float(np.ptp(values)) / first]))
+    return _of_harmonics(course, np.ones(_KEPT[change]))
 
 
 class _Course(NamedTuple):
@@ -328,4 +339,4 @@ def with_smoothing(pair: GearPair, elements: MeshElements, window: float) -> Mes
     orders = np.arange(1, _HARMONICS + 1)
     smooth = _of_harmonics(_course_of(pair, stiffness), np.sinc(window * orders))
     changed = fitted(lambda xi: stiffness(xi) * smooth(xi) / total(xi), pair, elements)
-    return _with_law(pair, elements, changed, stiffness.interval)
+    return with_law(pair, elements, changed, stiffness.interval)

@@ -9,7 +9,7 @@ Sources: docs/how_to/check_your_model.md, "Explanations"; docs/theory/equations.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Literal
@@ -31,19 +31,31 @@ from lumped.model.unilateral_motion import Shooting, motion_of_shooting
 from lumped.path_function import PathFunction
 from lumped.quasi_static.contacts import contact_of
 from lumped.quasi_static.elements import MeshElements, mean_of_pairs
+from lumped.schema.bodies import bodies_of
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
+from validation.check.explanations.contact_laws import (
+    Compliance,
+    with_compliance,
+    with_path,
+    with_peak,
+    with_table,
+)
+from validation.check.explanations.friction_courses import (
+    STATIC_LOAD,
+    EqualStaticFriction,
+    Friction,
+    StaticFriction,
+    friction_over_path,
+    shifted_friction,
+    static_friction,
+)
 from validation.check.explanations.pair_laws import (
-    SAME,
-    TOLERANCE,
     Damper,
     Stiffness,
     damper_factor,
     fitted,
-    marks_of,
-    separate,
     static_error,
-    total_of_pairs,
     wave_error,
     with_error,
     with_lag,
@@ -63,18 +75,36 @@ _PULLS = -1e-6
 #: Altered equations whose linear motion grows by more than this factor in a mesh cycle have no motion.
 _GROWS = 1.2
 
-Friction = Literal[
-    "",
-    "without reversal",
-    "leading pair",
-    "total load on the leading pair",
-    "newest pair",
-    "total load on the newest pair",
-    "pitch point of the rack",
-    "middle of the path",
+Bearings = Literal[
+    "elastic",
+    "rigid",
+    "rigid pinion",
+    "rigid gear",
+    "rigid along",
+    "rigid across",
+    "left out",
 ]
-Bearings = Literal["elastic", "rigid", "left out"]
-Arms = Literal["", "from A", "of the other gear", "at the pitch point", "pitch radii"]
+#: Coordinates that supports hold: those of the translations.
+_HELD: Mapping[Bearings, tuple[int, ...]] = {
+    "rigid": (X_P, X_G, Y_P, Y_G),
+    "left out": (X_P, X_G, Y_P, Y_G),
+    "rigid pinion": (X_P, Y_P),
+    "rigid gear": (X_G, Y_G),
+    "rigid along": (X_P, X_G),
+    "rigid across": (Y_P, Y_G),
+}
+Arms = Literal[
+    "",
+    "from A",
+    "from A on the pinion",
+    "from both ends",
+    "from the pitch point",
+    "of the other gear",
+    "at the pitch point",
+    "pitch radii",
+    "base radii",
+    "line of the rack",
+]
 
 
 @dataclass(frozen=True)
@@ -97,6 +127,12 @@ class Physics:
     course : course of the friction over the path of contact
     radius : factor on the base radii as lever arms of the mesh force and in the transmission error
     damper : law of the dampers of the teeth
+    proportional_bearings : whether dampers of bearings are to their stiffness as that of the mesh to its mean
+    path_start, path_end : base pitches by which the path of contact starts and ends further along its line
+    table : entries of a table of the stiffness of the whole mesh over a mesh cycle, joined by straight lines;
+        negative: steps; 0: no table
+    compliance : change of parts of the compliance of the energy method
+    peak : share of half the path by which the peak of a parabola lies further along it
     stiffness : change of the stiffness of the tooth pairs over the mesh cycle
     slope, curvature : further slope and curvature of the stiffness of a tooth pair over its path
     ramps : share of its path over which a tooth pair takes up and gives up its stiffness
@@ -105,7 +141,8 @@ class Physics:
     smoothing : window of a moving average of the stiffness of the whole mesh [mesh cycles]
     error_cosine, error_sine : amplitudes of a profile error of all teeth at the mesh frequency, from A on [m]
     static_error : factor with which the static deflection of the mesh is an error of all teeth
-    bearings : "rigid": without translations, bearings carry the mesh force; "left out": a torsional model
+    bearings : "rigid" and the like: without these translations, bearings carry the mesh force; "left out": a
+        torsional model
     """
 
     pulling: bool = False
@@ -123,6 +160,12 @@ class Physics:
     course: Friction = ""
     radius: float = 1.0
     damper: Damper = "of each pair"
+    proportional_bearings: bool = False
+    path_start: float = 0.0
+    path_end: float = 0.0
+    table: int = 0
+    compliance: Compliance = ""
+    peak: float = 0.0
     stiffness: Stiffness = ""
     slope: float = 0.0
     curvature: float = 0.0
@@ -155,7 +198,20 @@ class Physics:
 
 
 #: Fields that alter the stiffness of the teeth, their error, and the constant data of the equations.
-_OF_STIFFNESS = ("stiffness", "slope", "curvature", "ramps", "lag", "variation", "smoothing")
+_OF_STIFFNESS = (
+    "stiffness",
+    "slope",
+    "curvature",
+    "ramps",
+    "lag",
+    "variation",
+    "smoothing",
+    "path_start",
+    "path_end",
+    "table",
+    "compliance",
+    "peak",
+)
 _OF_ERROR = ("error_cosine", "error_sine", "static_error")
 _OF_EQUATIONS = (
     "moment_pinion",
@@ -167,10 +223,13 @@ _OF_EQUATIONS = (
     "approach_gear",
     "arms",
     "mass_damping",
+    "proportional_bearings",
     "path_shift",
     "radius",
     "bearings",
 )
+#: Courses of the friction that need a system of their own.
+_SYSTEMS = dict(zip(STATIC_LOAD, (StaticFriction, EqualStaticFriction), strict=True))
 #: The model without alteration.
 UNALTERED = Physics()
 
@@ -209,6 +268,8 @@ def motion_of(
             return MotionCurves(pair, linear, 1, again)
     if physics.pulling:
         raise NumericalError("The linear motion is unstable.")
+    if physics.course in STATIC_LOAD:
+        raise NumericalError("Friction by the static load needs prescribed contact that is not lost.")
     if physics.of_equations:
         start = periodic_solution(system, np.zeros(1), estimate_error=False)
         if start.spectral_radius > _GROWS:
@@ -227,7 +288,8 @@ def altered_system(pair: GearPair, physics: Physics) -> LTVSystem:
     cycle = MeshCycle(pair.geometry, altered_elements(pair, physics))
     equations = altered_equations(pair, physics) if physics.of_equations else None
     supports = supports_of(pair, None)
-    return LTVSystem.of(pair, "full", cycle=cycle, supports=supports, equations=equations)
+    kind = _SYSTEMS.get(physics.course, LTVSystem)
+    return kind.of(pair, "full", cycle=cycle, supports=supports, equations=equations)
 
 
 def altered_equations(pair: GearPair, physics: Physics) -> Structure:
@@ -238,7 +300,6 @@ def altered_equations(pair: GearPair, physics: Physics) -> Structure:
     arm = friction_arms(pair, physics.arms)
     arm[:, 0] += arm[:, 1] * physics.path_shift * pair.geometry.base_pitch
     rotations = [THETA_P, THETA_G]
-    translations = [X_P, X_G, Y_P, Y_G]
     normal[rotations] *= physics.radius
     deflection[rotations] *= physics.radius
     deflection[X_P] *= physics.approach_pinion
@@ -251,8 +312,9 @@ def altered_equations(pair: GearPair, physics: Physics) -> Structure:
     apart = s.apart.copy()
     if physics.bearings != "elastic":
         for forces in (normal, deflection, arm, apart):
-            forces[translations] = 0.0
-    damping = s.damping + damping_of_masses(pair, physics.mass_damping)
+            forces[list(_HELD[physics.bearings])] = 0.0
+    damping = proportional_dampers(pair) if physics.proportional_bearings else s.damping
+    damping = damping + damping_of_masses(pair, physics.mass_damping)
     return replace(s, damping=damping, normal=normal, deflection=deflection, friction_arm=arm, apart=apart)
 
 
@@ -263,7 +325,19 @@ def friction_arms(pair: GearPair, arms: Arms) -> FloatArray:
     """
     g = pair.geometry
     arm = structure(pair).friction_arm.copy()
-    if arms == "from A":
+    if arms in ("from A on the pinion", "from both ends"):
+        arm[THETA_P] = g.L_XA, -1.0
+        if arms == "from both ends":
+            arm[THETA_G] = g.L_XD, -1.0
+    elif arms == "from the pitch point":
+        arm[[THETA_P, THETA_G]] = g.L_XP, -1.0
+    elif arms == "line of the rack":
+        length = g.base_radius_pinion + g.base_radius_gear
+        arm[THETA_G, 0] = length * math.tan(pair.basic_rack.pressure_angle)
+    elif arms == "base radii":
+        arm[THETA_P] = -g.base_radius_pinion, 0.0
+        arm[THETA_G] = g.base_radius_gear, 0.0
+    elif arms == "from A":
         arm[THETA_P] = g.L_XA, -1.0
         arm[THETA_G] = g.L_XY + g.L_XA, -1.0
     elif arms == "of the other gear":
@@ -279,6 +353,16 @@ def friction_arms(pair: GearPair, arms: Arms) -> FloatArray:
     return arm
 
 
+def proportional_dampers(pair: GearPair) -> FloatArray:
+    """Return dampers (6,) of the bearings in proportion to their stiffness, with the ratio of the mesh.
+
+    c = k 2 zeta sqrt(m_e/mean K), as the mesh damper is to the mean stiffness of the mesh.
+    """
+    mean = mean_of_pairs(contact_of(pair).elements(pair).stiffness, pair.geometry.base_pitch)
+    time = 2.0 * pair.mesh.damping_ratio * math.sqrt(bodies_of(pair).effective_mass / mean)
+    return np.asarray(time * structure(pair).stiffness)
+
+
 def damping_of_masses(pair: GearPair, ratio: float) -> FloatArray:
     """Return dampers (6,) in proportion to masses and inertias m: 2 ratio omega m at the mesh frequency."""
     frequency = 2.0 * math.pi / pair.geometry.mesh_period
@@ -288,6 +372,12 @@ def damping_of_masses(pair: GearPair, ratio: float) -> FloatArray:
 def altered_elements(pair: GearPair, physics: Physics) -> MeshElements:
     """Return the element laws of a tooth pair with alterations of stiffness, dampers and friction."""
     elements = contact_of(pair).elements(pair)
+    if physics.compliance:
+        elements = with_compliance(pair, elements, physics.compliance)
+    if physics.peak:
+        elements = with_peak(pair, elements, physics.peak)
+    if physics.path_start or physics.path_end:
+        elements = with_path(pair, elements, physics.path_start, physics.path_end)
     if physics.stiffness:
         elements = with_stiffness(pair, elements, physics.stiffness)
     if physics.slope or physics.curvature:
@@ -298,6 +388,8 @@ def altered_elements(pair: GearPair, physics: Physics) -> MeshElements:
         elements = with_variation(pair, elements, physics.variation)
     if physics.smoothing > 0.0:
         elements = with_smoothing(pair, elements, physics.smoothing)
+    if physics.table:
+        elements = with_table(pair, elements, physics.table)
     if physics.lag:
         elements = with_lag(pair, elements, physics.lag)
     if physics.error_cosine or physics.error_sine:
@@ -317,79 +409,10 @@ def altered_friction(
 ) -> PathFunction:
     """Return the friction coefficient over xi with alterations of its size and of its course."""
     if physics.path_shift:
-        friction = _shifted_friction(pair, friction, physics.path_shift * pair.geometry.base_pitch)
+        friction = shifted_friction(pair, friction, physics.path_shift * pair.geometry.base_pitch)
     if physics.course:
-        friction = _friction_over_path(pair, friction, stiffness, physics.course)
+        friction = friction_over_path(pair, friction, stiffness, physics.course)
     return friction if physics.friction == 1.0 else friction.scaled(physics.friction)
-
-
-def _shifted_friction(pair: GearPair, friction: PathFunction, shift: float) -> PathFunction:
-    """Friction coefficient over xi of a path of contact that lies further along its line by a length [m].
-
-    Beyond its ends the coefficient stays.
-    """
-    low, high = friction.interval
-    edge = SAME * pair.geometry.base_pitch
-
-    def further(xi: FloatArray) -> FloatArray:
-        return np.asarray(friction(np.clip(xi + shift, low + edge, high - edge)))
-
-    marks = np.append(friction.breaks, [low, high, pair.geometry.L_XP]) - shift
-    marks = separate(marks, pair, low, high)
-    size = float(np.abs(further(np.linspace(low, high, 401)[1:-1])).max())
-    breaks = np.concatenate([[low], marks, [high]])
-    return PathFunction.fit(further, breaks, marks, tolerance=TOLERANCE * max(size, 1e-300))
-
-
-def _friction_over_path(
-    pair: GearPair, friction: PathFunction, stiffness: PathFunction, course: Friction
-) -> PathFunction:
-    """Friction coefficient over xi with another course.
-
-    Without reversal: |mu|. Only the leading pair, the last one that is on the path of contact: mu where the
-    next pair is no longer there, else 0. Only the newest pair, the one that came into contact last: the same
-    before the next pair comes. The friction of one pair by the load of all pairs: mu K/k there, with the
-    stiffness K of the whole mesh, because loads are shared as stiffnesses. Reversal at another place: |mu|
-    with the sign that mu has on its side of that place.
-    """
-    low, high = friction.interval
-    pitch = pair.geometry.base_pitch
-    only_newest = course.endswith("newest pair")
-    change_of_pairs = low + pitch if only_newest else high - pitch
-    total = total_of_pairs(pair, stiffness)
-    reversal = reversal_of(pair, course, low, high)
-    behind = float(np.sign(friction(np.array([high - SAME * pitch]))[0]))
-
-    def changed(xi: FloatArray) -> FloatArray:
-        if course == "without reversal":
-            return np.abs(friction(xi))
-        if reversal is not None:
-            return np.asarray(behind * np.sign(xi - reversal) * np.abs(friction(xi)))
-        alone = xi < change_of_pairs if only_newest else xi > change_of_pairs
-        of_one_pair = np.where(alone, friction(xi), 0.0)
-        if not course.startswith("total"):
-            return np.asarray(of_one_pair)
-        of_pair = np.maximum(stiffness(xi), 1e-6 * pair_stiffness_scale)
-        return np.asarray(of_one_pair * np.maximum(total(xi), of_pair) / of_pair)
-
-    pair_stiffness_scale = mean_of_pairs(stiffness, pitch)
-    laws = (friction, stiffness) if course.startswith("total") else (friction,)
-    marks = marks_of(pair, laws, low, high)
-    marks = np.append(marks, [change_of_pairs, pair.geometry.L_XP, *([] if reversal is None else [reversal])])
-    marks = separate(marks, pair, low, high)
-    size = float(np.abs(changed(np.linspace(low, high, 401)[1:-1])).max())
-    breaks = np.concatenate([[low], marks, [high]])
-    return PathFunction.fit(changed, breaks, marks, tolerance=TOLERANCE * max(size, 1e-300))
-
-
-def reversal_of(pair: GearPair, course: Friction, low: float, high: float) -> float | None:
-    """Return the place xi [m] at which friction reverses where that is not the pitch point; None: it is.
-
-    The pitch point of the rack lies at r_b tan(alpha) with the pressure angle of the rack, not of operation.
-    """
-    if course == "pitch point of the rack":
-        return pair.geometry.base_radius_pinion * math.tan(pair.basic_rack.pressure_angle)
-    return 0.5 * (low + high) if course == "middle of the path" else None
 
 
 class AlteredLaws(ToothLaws):
@@ -398,11 +421,13 @@ class AlteredLaws(ToothLaws):
     def __init__(self, pair: GearPair, physics: Physics) -> None:
         super().__init__(pair)
         laws = contact_of(pair).elements(pair)
-        self.friction = altered_friction(pair, self.friction, laws.stiffness, physics)
         self.factor: Callable[[FloatArray], FloatArray] | None = None
         if self.elements is not None:
             self.elements = altered_elements(pair, physics)
-        elif physics.damper != "of each pair":
+            self.friction = self.elements.friction
+            return
+        self.friction = altered_friction(pair, self.friction, laws.stiffness, physics)
+        if physics.damper != "of each pair":
             self.factor = damper_factor(pair, laws, physics.damper)
 
     def of_kind(self, kind: int, xi: FloatArray) -> Records:
@@ -425,6 +450,9 @@ def _linear_motion(system: LTVSystem, physics: Physics) -> xr.Dataset | None:
         force = system.pinion_torque / system.pair.geometry.base_radius_pinion
         if float(motion["normal_load"].min()) < _PULLS * force:
             return None
+    if isinstance(system, StaticFriction):
+        friction = static_friction(system, system.cycle.sample(times))
+        motion["friction_force"] = motion["friction_force"].copy(data=friction)
     return _with_bearing_forces(motion, physics, system)
 
 
@@ -438,9 +466,11 @@ def _with_bearing_forces(motion: xr.Dataset, physics: Physics, system: LTVSystem
     load = motion["normal_load"].to_numpy().sum(axis=0)
     friction = motion["friction_force"].to_numpy().sum(axis=0)
     true = structure(system.pair)
-    rigid = 1.0 if physics.bearings == "rigid" else 0.0
+    rigid = 0.0 if physics.bearings == "left out" else 1.0
     motion = motion.copy()
-    for name, place in (("x_p", X_P), ("x_g", X_G), ("y_p", Y_P), ("y_g", Y_G)):
+    names = {X_P: "x_p", X_G: "x_g", Y_P: "y_p", Y_G: "y_g"}
+    for place in _HELD[physics.bearings]:
+        name = names[place]
         force = -rigid * (true.normal[place] * load + true.friction_arm[place, 0] * friction)
         variable = f"bearing_force_{name}"
         motion[variable] = motion[variable].copy(data=force)

@@ -42,6 +42,8 @@ class Reading:
     time_constant : of a low-pass filter of first order of all channels, 1 over the mesh order of its cutoff
     both_ways : of a low-pass filter of second order that runs forward and backward, 1 over the mesh order of
         its cutoff
+    second_order : of a low-pass filter of second order of all channels, 1 over the mesh order of its cutoff
+    filters : channel -> the same, of a filter of this channel alone
     high_pass : mesh order of the cutoff of a high-pass filter of first order of all channels
     window : of a moving average of all channels [mesh cycles]
     most_orders : largest mesh order that the curves have; 0: all of them
@@ -59,6 +61,8 @@ class Reading:
     offsets: tuple[str, ...] = ()
     time_constant: float = 0.0
     both_ways: float = 0.0
+    second_order: float = 0.0
+    filters: ByChannel = ()
     high_pass: float = 0.0
     window: float = 0.0
     most_orders: int = 0
@@ -82,9 +86,15 @@ class Reading:
         """Return the reading with other quantities, by channel."""
         return replace(self, quantities=tuple(sorted((dict(self.quantities) | dict(quantities)).items())))
 
-    def with_delay(self, channel: str, delay: float) -> Reading:
-        """Return the reading with the delay of a channel."""
-        return replace(self, delays=tuple(sorted((dict(self.delays) | {channel: delay}).items())))
+    def with_delay(self, channels: Iterable[str], delay: float) -> Reading:
+        """Return the reading with the delay of channels."""
+        delays = dict(self.delays) | dict.fromkeys(channels, delay)
+        return replace(self, delays=tuple(sorted(delays.items())))
+
+    def with_filter(self, channels: Iterable[str], time_constant: float) -> Reading:
+        """Return the reading with a low-pass filter of second order of channels alone."""
+        filters = dict(self.filters) | dict.fromkeys(channels, time_constant)
+        return replace(self, filters=tuple(sorted(filters.items())))
 
 
 #: The curves as they are.
@@ -96,6 +106,7 @@ def read(problem: Problem, reading: Reading) -> tuple[ChannelOrders, ...]:
     factors = dict(reading.factors)
     quantities = dict(reading.quantities)
     delays = dict(reading.delays)
+    filters = dict(reading.filters)
     result = []
     for one in _in_our_axes(_channels(problem, reading), reading):
         channel = one.channel
@@ -106,21 +117,26 @@ def read(problem: Problem, reading: Reading) -> tuple[ChannelOrders, ...]:
             orders = replace(orders, values=orders.values.conj())
         channel = replace(channel, quantity=quantities.get(channel.name, channel.quantity))
         offset = channel.name in reading.offsets
-        result.append(ChannelOrders(channel, orders, gains=_gains(reading, orders.orders), offset=offset))
+        gains = _gains(reading, orders.orders, filters.get(channel.name, 0.0))
+        result.append(ChannelOrders(channel, orders, gains=gains, offset=offset))
     return tuple(result)
 
 
-def _gains(reading: Reading, orders: FloatArray) -> ComplexArray | None:
-    """Gains of the filters of a reading at mesh orders; None: no filter.
+def _gains(reading: Reading, orders: FloatArray, own: float) -> ComplexArray | None:
+    """Gains of the filters of a reading, and of a channel of its own, at mesh orders; None: no filter.
 
     A low-pass filter of first order has 1/(1 + i m tau), a moving average over w cycles sin(pi m w)/(pi m w),
-    a Butterworth filter of second order both ways 1/(1 + (m tau)^4), a high-pass filter i m/(i m + c).
+    a Butterworth filter of second order 1/(1 + i sqrt(2) m tau - (m tau)^2), both ways 1/(1 + (m tau)^4), a
+    high-pass filter i m/(i m + c).
     """
-    filters = (reading.time_constant, reading.window, reading.both_ways, reading.high_pass)
+    second = (max(reading.second_order, 0.0), max(own, 0.0))
+    filters = (reading.time_constant, reading.window, reading.both_ways, reading.high_pass, *second)
     if max(filters) <= 0.0 and reading.most_orders == 0:
         return None
     gains = np.sinc(orders * reading.window) / (1.0 + 1j * orders * reading.time_constant)
     gains = gains / (1.0 + (orders * reading.both_ways) ** 4)
+    for constant in second:
+        gains = gains / (1.0 + 1j * math.sqrt(2.0) * orders * constant - (orders * constant) ** 2)
     gains = gains * 1j * orders / (1j * orders + max(reading.high_pass, 0.0))
     if reading.most_orders:
         gains = np.where(orders <= reading.most_orders + 1e-9, gains, 0.0)

@@ -65,21 +65,21 @@ def test_contact_is_lost_in_one_of_the_pairs():
 @pytest.mark.parametrize("name", PAIRS)
 def test_a_right_record_confirms(name, quantities):
     # Another phase, 50.317 samples a mesh cycle; 400 mesh cycles hold many engagements of tooth pair A.
-    for seed, phase in ((1, 0.37), (2, 0.81)):
-        comparison = compared(name, quantities, cycles=400, seed=seed, phase=phase)
+    cycles = 400 if quantities is WITH_A_TOOTH else 60
+    for seed, phase, samples in ((1, 0.37, None), (2, 0.81, varied(name))):
+        comparison = compared(name, quantities, cycles=cycles, seed=seed, phase=phase, samples=samples)
         assert [one.verdict for one in comparison.channels] == len(quantities) * [Record.CONFIRMS], (
             comparison.words
         )
         assert min(one.explained for one in comparison.channels) > 0.995
         assert comparison.shift % 1.0 == pytest.approx(phase, abs=2e-3)
-        assert compared(name, quantities, cycles=400, samples=varied(name)).verdict is Record.CONFIRMS
 
 
-@pytest.mark.parametrize("noise", [0.0, 0.01])
+@pytest.mark.parametrize(("noise", "seeds"), [(0.0, 1), (0.01, 3)])
 @pytest.mark.parametrize("name", PAIRS)
-def test_one_percent_of_noise_changes_no_verdict(name, noise):
+def test_one_percent_of_noise_changes_no_verdict(name, noise, seeds):
     for change, verdict in ((None, Record.CONFIRMS), (flip("x_p"), Record.CONTRADICTS)):
-        for seed in range(5):
+        for seed in range(seeds):
             comparison = compared(name, noise=noise, change=change, seed=seed)
             assert comparison.verdict is verdict, comparison.words
 

@@ -1,0 +1,15 @@
+"""Checks of the same pair share its two motions."""
+
+import importlib
+
+import pytest
+
+from tests.validation.check import motions
+
+
+@pytest.fixture(autouse=True)
+def shared_motions(monkeypatch):
+    """Let ``check`` take motions of pairs that were computed before; it only reads them."""
+    check = importlib.import_module("validation.check.check")
+    for name in ("lumped_motion", "multibody_motion"):
+        monkeypatch.setattr(check, name, getattr(motions, name))

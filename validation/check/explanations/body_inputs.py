@@ -1,0 +1,303 @@
+"""Explanations that change masses, inertias and bearings.
+
+Sources: docs/how_to/check_your_model.md, "Explanations".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+
+from lumped.schema.bodies import bodies_of, solid_disc
+from lumped.schema.pair import GearPair
+from validation.check.explanations.cause import Cause, Choice, Variant
+from validation.check.explanations.fields import (
+    DAMPER,
+    GEARS,
+    LINES,
+    Fields,
+    choice,
+    constant,
+    fixed_values,
+    free_factor,
+    on_springs,
+    reference_radii,
+    tip_radii,
+)
+from validation.check.problem import Problem
+
+#: Trial factors of a mass, and of a bearing stiffness.
+_MASS = (0.12, 0.35, 0.6, 0.8, 1.25, 1.7, 2.8, 8.0, 25.0)
+_BEARING = (0.01, 0.1, 0.4, 2.5, 10.0, 100.0)
+
+
+def _bearing(pair: GearPair, key: str, value: float, gears: Sequence[str], lines: Sequence[str]) -> Fields:
+    """Stiffness or damping ratio of bearings times a factor."""
+    fields = {}
+    for gear in gears:
+        bearing = getattr(pair.bearings, gear)
+        for line in lines:
+            fields[f"bearings.{gear}.{line}_{key}"] = getattr(bearing, f"{line}_{key}") * value
+    return fields
+
+
+def _inertia(pair: GearPair, value: float, gears: Sequence[str] = GEARS) -> Fields:
+    bodies = bodies_of(pair)
+    return {f"{gear}.inertia": getattr(bodies, f"inertia_{gear}") * value for gear in gears}
+
+
+def _mass(pair: GearPair, value: float, gears: Sequence[str] = GEARS) -> Fields:
+    bodies = bodies_of(pair)
+    return {f"{gear}.mass": getattr(bodies, f"mass_{gear}") * value for gear in gears}
+
+
+def _density(pair: GearPair, value: float) -> Fields:
+    return {**_inertia(pair, value), **_mass(pair, value)}
+
+
+def _density_of(pair: GearPair, value: float, gear: str) -> Fields:
+    return {**_inertia(pair, value, (gear,)), **_mass(pair, value, (gear,))}
+
+
+def _no_bearing_damping(problem: Problem, variant: Variant) -> list[Choice]:
+    """Dampers of all bearings left out, of one gear, or of one direction."""
+    if variant.pair.shafts is not None:
+        return []
+    groups = {
+        "left out": (GEARS, LINES, ""),
+        **{f"left out, {gear}": ((gear,), LINES, f" of the {gear}") for gear in GEARS},
+        "left out, along": (GEARS, ("loa",), " along the line of action"),
+        "left out, across": (GEARS, ("oloa",), " across the line of action"),
+    }
+
+    def none(gears: Sequence[str], lines: Sequence[str]) -> Callable[[GearPair], Fields]:
+        return lambda pair: _bearing(pair, "damping_ratio", 0.0, gears, lines)
+
+    return [
+        choice(label, f"the damping of the bearings{words} left out", none(gears, lines))
+        for label, (gears, lines, words) in groups.items()
+    ]
+
+
+def _ring(problem: Problem, variant: Variant) -> list[Choice]:
+    """Inertia by m r^2 in place of m r^2/2, and the other way round."""
+    choices = []
+    for gears, words in ((GEARS, "both gears"), *(((gear,), f"the {gear}") for gear in GEARS)):
+        for value, formula in ((2.0, "m r^2 in place of m r^2/2"), (0.5, "half of its value")):
+            choices.append(
+                choice(
+                    f"{words}: {value:g}",
+                    f"the inertia of {words} by {formula}",
+                    lambda pair, value=value, gears=gears: _inertia(pair, value, gears),  # type: ignore[misc]
+                )
+            )
+    return choices
+
+
+def _disc(problem: Problem, variant: Variant) -> list[Choice]:
+    """Masses and inertias of discs of other radii, or of discs without bore."""
+    pair = variant.pair
+    if any(getattr(pair, gear).mass is not None for gear in GEARS):
+        return []
+    g = pair.geometry
+    bores = tuple(getattr(pair, gear).bore for gear in GEARS)
+    discs = {
+        "tip circle": ("gears as discs of the tip circle", tip_radii(pair), bores),
+        "base circle": (
+            "gears as discs of the base circle",
+            (g.base_radius_pinion, g.base_radius_gear),
+            bores,
+        ),
+        "root circle": (
+            "gears as discs of the root circle",
+            (g.root_radius_pinion, g.root_radius_gear),
+            bores,
+        ),
+        "diameter": (
+            "gears as discs with the diameter for the radius: 4 times the mass, 16 times the inertia",
+            tuple(2.0 * radius for radius in reference_radii(pair)),
+            tuple(2.0 * bore for bore in bores),
+        ),
+    }
+    if any(bores):
+        discs["without bore"] = "gears as discs without bore", reference_radii(pair), (0.0, 0.0)
+    return [
+        choice(label, words, constant(_discs(pair, radii, holes)))
+        for label, (words, radii, holes) in discs.items()
+    ]
+
+
+def _discs(pair: GearPair, radii: Sequence[float], bores: Sequence[float]) -> Fields:
+    """Masses and inertias of discs with radii and bores [m]."""
+    fields: dict[str, float] = {}
+    for name, radius, bore in zip(GEARS, radii, bores, strict=True):
+        gear = getattr(pair, name)
+        mass, inertia = solid_disc(radius, gear.face_width, gear.density, bore)
+        fields |= {f"{name}.mass": mass, f"{name}.inertia": inertia}
+    return fields
+
+
+def _values_of(pair: GearPair, what: str, gear: str) -> dict[str, float]:
+    """Field without the name of the gear -> value of a gear: its bearings, or its mass and inertia."""
+    if what == "bearings":
+        bearing = getattr(pair.bearings, gear)
+        keys = [f"{line}_{key}" for line in LINES for key in ("stiffness", "damping_ratio")]
+        return {key: getattr(bearing, key) for key in keys}
+    bodies = bodies_of(pair)
+    return {key: getattr(bodies, f"{key}_{gear}") for key in ("mass", "inertia")}
+
+
+def _given(pair: GearPair, what: str, sources: dict[str, str]) -> Fields:
+    """Bearings or masses of gears by those of others: gear -> gear whose values it has."""
+    start = "bearings." if what == "bearings" else ""
+    return {
+        f"{start}{gear}.{key}": value
+        for gear, source in sources.items()
+        for key, value in _values_of(pair, what, source).items()
+    }
+
+
+def _exchanged(problem: Problem, variant: Variant) -> list[Choice]:
+    """Bearings or masses of both gears exchanged; both directions of the bearings exchanged."""
+    pair = variant.pair
+    if pair.shafts is not None:
+        return []
+    lines = {
+        f"bearings.{gear}.{one}_{key}": getattr(getattr(pair.bearings, gear), f"{other}_{key}")
+        for gear in GEARS
+        for one, other in (LINES, LINES[::-1])
+        for key in ("stiffness", "damping_ratio")
+    }
+    both = dict(zip(GEARS, GEARS[::-1], strict=True))
+    return [
+        choice(
+            "bearings",
+            "the bearings of pinion and gear exchanged",
+            constant(_given(pair, "bearings", both)),
+        ),
+        choice(
+            "directions",
+            "bearing stiffness along and across the line of action exchanged",
+            constant(lines),
+        ),
+        choice(
+            "masses",
+            "masses and inertias of pinion and gear exchanged",
+            constant(_given(pair, "masses", both)),
+        ),
+    ]
+
+
+def _one_for_both(problem: Problem, variant: Variant) -> list[Choice]:
+    """Both gears with the bearings or masses of one of them; one bearing stiffness in both directions."""
+    pair = variant.pair
+    if pair.shafts is not None:
+        return []
+    choices = []
+    for what, words in (("bearings", "bearings"), ("masses", "mass and inertia")):
+        values = [_values_of(pair, what, gear) for gear in GEARS]
+        if values[0] == values[1]:
+            continue
+        for gear in GEARS:
+            fields = _given(pair, what, dict.fromkeys(GEARS, gear))
+            choices.append(
+                choice(f"{what} of the {gear}", f"{words} of the {gear} for both gears", constant(fields))
+            )
+    for line, words in zip(LINES, ("along", "across"), strict=True):
+        fields = {
+            f"bearings.{gear}.{other}_{key}": getattr(getattr(pair.bearings, gear), f"{line}_{key}")
+            for gear in GEARS
+            for other in LINES
+            for key in ("stiffness", "damping_ratio")
+        }
+        if pair.with_(fields) != pair:
+            text = f"the bearing stiffness {words} the line of action in both directions"
+            choices.append(choice(f"bearings {words}", text, constant(fields)))
+    return choices
+
+
+def _causes() -> Iterator[Cause]:
+    yield fixed_values(
+        "bearing damping left out",
+        "no damping of the bearings",
+        "both gears, one gear, one direction",
+        _no_bearing_damping,
+    )
+    yield fixed_values(
+        "inertia by m r^2",
+        "m r^2 in place of m r^2/2, or half of the inertia",
+        "2, 0.5; both gears, one gear",
+        _ring,
+    )
+    yield fixed_values(
+        "radius of the discs",
+        "mass and inertia of discs of another circle",
+        "tip circle, base circle, root circle, diameter, without bore",
+        _disc,
+    )
+    yield fixed_values(
+        "exchanged",
+        "values of pinion and gear, or of both directions, exchanged",
+        "bearings, directions, masses",
+        _exchanged,
+    )
+    yield fixed_values(
+        "values of one for both",
+        "bearings or masses of one gear for both gears, or one bearing stiffness for both directions",
+        "bearings, masses: pinion, gear; bearings: along, across",
+        _one_for_both,
+    )
+    yield free_factor("inertia", "the inertia of both gears", _MASS, _inertia)
+    yield free_factor("mass", "the mass of both gears", _MASS, _mass, on_springs)
+    yield free_factor("density", "the density, so mass and inertia of both gears", _MASS, _density)
+    for gear in GEARS:
+        yield free_factor(
+            f"inertia of the {gear}",
+            f"the inertia of the {gear}",
+            _MASS,
+            lambda pair, value, gear=gear: _inertia(pair, value, (gear,)),  # type: ignore[misc]
+        )
+        yield free_factor(
+            f"mass of the {gear}",
+            f"the mass of the {gear}",
+            _MASS,
+            lambda pair, value, gear=gear: _mass(pair, value, (gear,)),  # type: ignore[misc]
+            on_springs,
+        )
+        yield free_factor(
+            f"density of the {gear}",
+            f"the density of the {gear}, so its mass and inertia,",
+            _MASS,
+            lambda pair, value, gear=gear: _density_of(pair, value, gear),  # type: ignore[misc]
+            on_springs,
+        )
+    groups = {
+        "": (GEARS, LINES, "of both gears"),
+        " of the pinion": (("pinion",), LINES, "of the pinion"),
+        " of the gear": (("gear",), LINES, "of the gear"),
+        " along the line of action": (GEARS, ("loa",), "along the line of action"),
+        " across the line of action": (GEARS, ("oloa",), "across the line of action"),
+        **{
+            f" of the {gear}, {words}": ((gear,), (line,), f"of the {gear} {words} the line of action")
+            for gear in GEARS
+            for line, words in (("loa", "along"), ("oloa", "across"))
+        },
+    }
+    for ending, (gears, lines, words) in groups.items():
+        for key, noun, grid in (("stiffness", "stiffness", _BEARING), ("damping_ratio", "damping", DAMPER)):
+
+            def fields(
+                pair: GearPair,
+                value: float,
+                key: str = key,
+                gears: Sequence[str] = gears,
+                lines: Sequence[str] = lines,
+            ) -> Fields:
+                return _bearing(pair, key, value, gears, lines)
+
+            yield free_factor(
+                f"bearing {noun}{ending}", f"the {noun} of the bearings {words}", grid, fields, on_springs
+            )
+
+
+#: Causes that change masses, inertias and bearings.
+OF_BODIES = tuple(_causes())

@@ -1,0 +1,221 @@
+"""Alterations of where a tooth pair touches, and of what its stiffness is made: path, tables, compliances.
+
+Each function takes the element laws over xi and returns altered ones.
+
+Sources: docs/how_to/check_your_model.md, "Explanations"; docs/theory/mesh_physics.md for the parts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from functools import lru_cache
+from types import MappingProxyType
+from typing import Literal, NamedTuple
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from lumped.errors import NumericalError
+from lumped.path_function import PathFunction
+from lumped.quasi_static.elements import MeshElements
+from lumped.schema.pair import GearPair
+from lumped.stiffness.energy import EnergyStiffness, pair_compliance
+from lumped.typing import FloatArray
+from validation.check.explanations.pair_laws import (
+    TOLERANCE,
+    fitted,
+    separate,
+    total_of_pairs,
+    with_law,
+)
+
+Part = Literal["bending", "shear", "axial", "foundation", "hertz", "pinion", "gear"]
+Compliance = Literal[
+    "",
+    "no bending",
+    "no shear",
+    "no compression",
+    "no foundation",
+    "no contact",
+    "half the contact",
+    "twice the contact",
+    "the pinion's tooth alone",
+    "the gear's tooth alone",
+    "two teeth of the pinion",
+    "two teeth of the gear",
+]
+
+
+class _Factors(NamedTuple):
+    """Factors on parts of the compliance; a part of both teeth is left out, halved or doubled."""
+
+    parts: Mapping[Part, float]
+    words: str
+
+
+#: Label -> factors on the parts of the compliance, with the explanation.
+COMPLIANCES: Mapping[Compliance, _Factors] = MappingProxyType(
+    {
+        "no bending": _Factors({"bending": 0.0}, "the bending of the teeth left out of the compliance"),
+        "no shear": _Factors({"shear": 0.0}, "the shear of the teeth left out of the compliance"),
+        "no compression": _Factors(
+            {"axial": 0.0}, "the axial compression of the teeth left out of the compliance"
+        ),
+        "no foundation": _Factors(
+            {"foundation": 0.0}, "the gear bodies, the fillet foundation, left out of the compliance"
+        ),
+        "no contact": _Factors({"hertz": 0.0}, "the Hertzian contact left out of the compliance"),
+        "half the contact": _Factors({"hertz": 0.5}, "half of the compliance of the Hertzian contact"),
+        "twice the contact": _Factors({"hertz": 2.0}, "twice the compliance of the Hertzian contact"),
+        "the pinion's tooth alone": _Factors({"gear": 0.0}, "the compliance of the pinion's tooth alone"),
+        "the gear's tooth alone": _Factors({"pinion": 0.0}, "the compliance of the gear's tooth alone"),
+        "two teeth of the pinion": _Factors(
+            {"gear": 0.0, "pinion": 2.0}, "the compliance of the pinion's tooth for both teeth"
+        ),
+        "two teeth of the gear": _Factors(
+            {"gear": 2.0, "pinion": 0.0}, "the compliance of the gear's tooth for both teeth"
+        ),
+    }
+)
+#: Places of the path of contact at which compliances are computed.
+_PLACES = 81
+#: Least stiffness over its largest value, where a change would make it negative.
+_LEAST_STIFFNESS = 0.02
+
+
+def with_compliance(pair: GearPair, elements: MeshElements, change: Compliance) -> MeshElements:
+    """Return element laws of the energy method with factors on parts of the compliance of a tooth pair.
+
+    Raises
+    ------
+    NumericalError : the stiffness of the pair does not come from the energy method
+    """
+    stiffness = elements.stiffness
+    places, share = _shares(pair, change)
+    rest = CubicSpline(places, 1.0 + share)
+
+    def changed(xi: FloatArray) -> FloatArray:
+        return np.asarray(stiffness(xi) / rest(xi))
+
+    return with_law(pair, elements, fitted(changed, pair, elements), stiffness.interval)
+
+
+@lru_cache(maxsize=64)
+def _shares(pair: GearPair, change: Compliance) -> tuple[FloatArray, FloatArray]:
+    """Places (n,) [m], and the change of the compliance there over the whole compliance."""
+    model = pair.mesh.stiffness
+    if not isinstance(model, EnergyStiffness):
+        raise NumericalError("Parts of the compliance are those of the energy method.")
+    places = np.linspace(pair.geometry.L_XA, pair.geometry.L_XD, _PLACES)
+    parts = pair_compliance(pair, places, hertz=model.hertz)
+    of_both = {
+        name: getattr(parts.pinion, name) + getattr(parts.gear, name)
+        for name in ("bending", "shear", "axial", "foundation")
+    }
+    values = {"hertz": parts.hertz, "pinion": parts.pinion.total, "gear": parts.gear.total, **of_both}
+    added = sum(values[part] * (factor - 1.0) for part, factor in COMPLIANCES[change].parts.items())
+    return places, np.asarray(added * parts.stiffness, dtype=np.float64)
+
+
+def with_path(pair: GearPair, elements: MeshElements, start: float, end: float) -> MeshElements:
+    """Return element laws on a path of contact whose ends lie further along its line by so many base pitches.
+
+    The stiffness over the path is stretched. The friction coefficient goes on beyond the old ends.
+
+    Raises
+    ------
+    NumericalError : the path is shorter than a base pitch
+    """
+    stiffness = elements.stiffness
+    pitch = pair.geometry.base_pitch
+    low, high = stiffness.interval
+    new = (low + start * pitch, high + end * pitch)
+    if new[1] - new[0] < pitch:
+        raise NumericalError(
+            "A path of contact that is shorter than a base pitch leaves teeth out of contact."
+        )
+    scale = (high - low) / (new[1] - new[0])
+
+    def stretched(xi: FloatArray) -> FloatArray:
+        return np.asarray(stiffness(np.clip(low + (xi - new[0]) * scale, low, high)))
+
+    further = new[0] + (stiffness.breaks - low) / scale
+    changed = with_law(pair, elements, fitted(stretched, pair, elements, new, further), new)
+    return replace(changed, friction=_longer(pair, elements.friction, new))
+
+
+def _longer(pair: GearPair, friction: PathFunction, interval: tuple[float, float]) -> PathFunction:
+    """Friction coefficient on another interval; beyond its old ends it stays."""
+    low, high = friction.interval
+    inside = 1e-9 * pair.geometry.base_pitch
+
+    def further(xi: FloatArray) -> FloatArray:
+        return np.asarray(friction(np.clip(xi, low + inside, high - inside)))
+
+    marks = separate(np.append(friction.breaks, [low, high, pair.geometry.L_XP]), pair, *interval)
+    size = float(np.abs(further(np.linspace(*interval, 401)[1:-1])).max())
+    breaks = np.concatenate([[interval[0]], marks, [interval[1]]])
+    return PathFunction.fit(further, breaks, marks, tolerance=TOLERANCE * max(size, 1e-300))
+
+
+def with_table(pair: GearPair, elements: MeshElements, entries: int) -> MeshElements:
+    """Return element laws whose stiffness of the whole mesh comes from a table over the mesh cycle.
+
+    Entries are at equal steps from A on; between them are straight lines. Negative: so many steps, each with
+    the value of its entry.
+    """
+    stiffness = elements.stiffness
+    low, _ = stiffness.interval
+    pitch = pair.geometry.base_pitch
+    total = total_of_pairs(pair, stiffness)
+    count = abs(entries)
+    phases = np.arange(count + 1) / count
+    # Just behind the entry: at A the new pair carries load.
+    values = total(low + (phases % 1.0) * pitch + 1e-6 * pitch)
+
+    def from_table(xi: FloatArray) -> FloatArray:
+        phase = np.mod((xi - low) / pitch, 1.0)
+        if entries < 0:
+            return np.asarray(values[np.minimum((phase * count).astype(int), count - 1)])
+        return np.asarray(np.interp(phase, phases, values))
+
+    return _of_whole_mesh(pair, elements, from_table, low + phases[:-1] * pitch)
+
+
+def _of_whole_mesh(
+    pair: GearPair,
+    elements: MeshElements,
+    course: Callable[[FloatArray], FloatArray],
+    places: FloatArray,
+) -> MeshElements:
+    """Element laws with another stiffness of the whole mesh, which has breaks at places of a base pitch."""
+    stiffness = elements.stiffness
+    total = total_of_pairs(pair, stiffness)
+    pitch = pair.geometry.base_pitch
+    low, high = stiffness.interval
+
+    def changed(xi: FloatArray) -> FloatArray:
+        return np.asarray(stiffness(xi) * course(xi) / total(xi))
+
+    further = np.add.outer(places, pitch * np.arange(int(np.ceil((high - low) / pitch)) + 1)).ravel()
+    return with_law(pair, elements, fitted(changed, pair, elements, None, further), stiffness.interval)
+
+
+def with_peak(pair: GearPair, elements: MeshElements, shift: float) -> MeshElements:
+    """Return element laws of a parabola whose peak lies further along the path by a share of half the path.
+
+    The fall from the peak is that of the parabola of the pair, over the same length.
+    """
+    stiffness = elements.stiffness
+    low, high = stiffness.interval
+    half = 0.5 * (high - low)
+    middle = 0.5 * (low + high)
+    inside = 1e-9 * half
+    peak, end = (float(one) for one in stiffness(np.array([middle, high - inside])))
+
+    def moved(xi: FloatArray) -> FloatArray:
+        values = peak - (peak - end) * ((xi - middle) / half - shift) ** 2
+        return np.asarray(np.maximum(values, _LEAST_STIFFNESS * peak))
+
+    return with_law(pair, elements, fitted(moved, pair, elements), stiffness.interval)

@@ -1,0 +1,261 @@
+"""Explanations that alter where tooth pairs touch, and of what their stiffness is made.
+
+Sources: docs/how_to/check_your_model.md, "Explanations".
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+
+from lumped.stiffness.energy import EnergyStiffness
+from lumped.stiffness.parabolic import ParabolicStiffness
+from validation.check.explanations.cause import Cause, Choice, Kind, Variant
+from validation.check.explanations.contact_laws import COMPLIANCES, Compliance
+from validation.check.explanations.fields import reference_radii, tip_radii
+from validation.check.problem import Problem
+
+#: Inputs of the pair whose path of contact or stiffness is altered.
+_PRESCRIBED = {"mesh.contact": "prescribed", "mesh.relief": "ignored"}
+#: Trial lengths over the base pitch by which an end of the path of contact moves.
+_ENDS = (-0.6, -0.3, -0.1, 0.1, 0.3, 0.6)
+#: Trial places of the peak of a parabola over half the path.
+_PEAKS = (-0.5, -0.2, 0.2, 0.5)
+#: Entries of a table of the mesh stiffness over the mesh cycle; negative: steps.
+_TABLES = (4, 5, 6, 8, 9, 10, 12, 15, 16, 20, -8, -10, -12, -16, -20, -24, -36)
+#: A path of contact is another one from this share of the base pitch on.
+_APART = 5e-3
+
+
+def may_vary(problem: Problem, variant: Variant) -> bool:
+    """Return whether the stiffness over the mesh cycle can be altered."""
+    return not variant.physics.of_stiffness and not variant.pair.mesh.stiffness.whole_mesh
+
+
+def _changed(label: float | str, words: str, change: Callable[[Variant], Variant]) -> Choice:
+    """A fixed value with prescribed contact."""
+    return Choice(label, words, lambda variant: change(variant.with_inputs(_PRESCRIBED)))
+
+
+def _path(start: float, end: float) -> Callable[[Variant], Variant]:
+    """Change of a variant by base pitches by which the path of contact starts and ends later."""
+    return lambda variant: variant.with_physics(path_start=start, path_end=end)
+
+
+def _contact_ratio(problem: Problem, variant: Variant) -> list[Choice]:
+    """Other contact ratios: zones of contact exchanged, the circular pitch for the base pitch."""
+    if not may_vary(problem, variant):
+        return []
+    ratio = variant.pair.geometry.contact_ratio
+    cosine = math.cos(variant.pair.basic_rack.pressure_angle)
+    ratios = {
+        "zones exchanged": (
+            2.0 * math.floor(ratio) + 1.0 - ratio,
+            "the zones of contact with more and with fewer tooth pairs exchanged",
+        ),
+        "circular pitch": (
+            ratio * cosine,
+            "the circular pitch in place of the base pitch in the contact ratio",
+        ),
+    }
+    return [
+        _changed(
+            f"{label}{ending}",
+            f"{words}: a contact ratio of {value:.3f}{text}",
+            _path(-(1.0 - share) * (value - ratio), share * (value - ratio)),
+        )
+        for label, (value, words) in ratios.items()
+        for ending, text, share in (
+            ("", ", from the true start of contact", 1.0),
+            (", about the middle", ", about the middle of the path", 0.5),
+        )
+        if value >= 1.0 and abs(value - ratio) > _APART
+    ]
+
+
+def _lines_of_action(problem: Problem, variant: Variant) -> list[Choice]:
+    """Other lines of action: at the pressure angle of the rack, and with other tip circles."""
+    pair = variant.pair
+    if not may_vary(problem, variant) or pair.shafts is not None:
+        return []
+    g = pair.geometry
+    rack = pair.basic_rack
+    addendum = rack.addendum_coefficient * rack.module
+    shifts = pair.profile_shifts
+    unshifted = [radius + addendum for radius in reference_radii(pair)]
+    full = [radius + shift * rack.module for radius, shift in zip(unshifted, shifts, strict=True)]
+    without = [tip - shift * rack.module for tip, shift in zip(tip_radii(pair), shifts, strict=True)]
+    length = (g.base_radius_pinion + g.base_radius_gear) * math.tan(rack.pressure_angle)
+    lines = {
+        "of the rack": (length, tip_radii(pair), "a line of action at the pressure angle of the rack"),
+        "of the rack, full tips": (
+            length,
+            full,
+            "a line of action at the pressure angle of the rack, with tips that are not shortened",
+        ),
+        "of the rack, tips without shift": (
+            length,
+            unshifted,
+            "a line of action at the pressure angle of the rack, with tips of gears without profile shift",
+        ),
+        "full tips": (g.L_XY, full, "tip circles that are not shortened"),
+        "tips without shift": (g.L_XY, without, "tip circles that lack the profile shift"),
+        "tips of the rack": (g.L_XY, unshifted, "tip circles of gears without profile shift"),
+    }
+    choices = []
+    for label, (whole, tips, words) in lines.items():
+        reaches = [
+            math.sqrt(tip**2 - base**2)
+            for tip, base in zip(tips, (g.base_radius_pinion, g.base_radius_gear), strict=True)
+        ]
+        start = (whole - reaches[1] - g.L_XA) / g.base_pitch
+        end = (reaches[0] - g.L_XD) / g.base_pitch
+        if max(abs(start), abs(end), abs(whole - g.L_XY) / g.base_pitch) < _APART:
+            continue
+
+        def change(
+            one: Variant, start: float = start, end: float = end, other: bool = whole != g.L_XY
+        ) -> Variant:
+            moved = one.with_physics(path_start=start, path_end=end)
+            if not other or one.pair.friction.law == "none":
+                return moved
+            return moved.with_physics(course="line of the rack", arms="line of the rack")
+
+        choices.append(_changed(label, words, change))
+    return choices
+
+
+def _parts(problem: Problem, variant: Variant) -> list[Choice]:
+    """Parts of the compliance of the energy method left out, halved or doubled."""
+    if not isinstance(variant.pair.mesh.stiffness, EnergyStiffness) or not may_vary(problem, variant):
+        return []
+
+    def change(label: Compliance) -> Callable[[Variant], Variant]:
+        return lambda one: one.with_physics(compliance=label)
+
+    return [_changed(label, factors.words, change(label)) for label, factors in COMPLIANCES.items()]
+
+
+def _tables(problem: Problem, variant: Variant) -> list[Choice]:
+    """The stiffness of the mesh from a table that is too coarse."""
+    if not may_vary(problem, variant):
+        return []
+
+    def change(entries: int) -> Callable[[Variant], Variant]:
+        return lambda one: one.with_physics(table=entries)
+
+    return [
+        _changed(
+            entries,
+            f"a table of {abs(entries)} entries of the mesh stiffness over the mesh cycle, "
+            + ("joined by straight lines" if entries > 0 else "without interpolation"),
+            change(entries),
+        )
+        for entries in _TABLES
+    ]
+
+
+def _is_parabola(problem: Problem, variant: Variant) -> bool:
+    return isinstance(variant.pair.mesh.stiffness, ParabolicStiffness) and may_vary(problem, variant)
+
+
+def _peak_of_parabola(problem: Problem, variant: Variant) -> list[Choice]:
+    """A parabola whose peak is at the pitch point."""
+    g = variant.pair.geometry
+    shift = (2.0 * g.L_XP - g.L_XA - g.L_XD) / (g.L_XD - g.L_XA)
+    if not _is_parabola(problem, variant) or abs(shift) < _APART:
+        return []
+    words = "a parabola of the stiffness with its peak at the pitch point"
+    return [_changed("pitch point", words, lambda one: one.with_physics(peak=shift))]
+
+
+def _causes() -> Iterator[Cause]:
+    def fixed(
+        name: str, meaning: str, span: str, choices: Callable[[Problem, Variant], Sequence[Choice]]
+    ) -> Cause:
+        return Cause(name, Kind.PHYSICS, meaning, span, choices)
+
+    def free(
+        name: str,
+        meaning: str,
+        span: str,
+        grid: tuple[float, ...],
+        change: Callable[[Variant, float], Variant],
+        applies: Callable[[Problem, Variant], bool] = may_vary,
+    ) -> Cause:
+        return Cause(
+            name=name,
+            kind=Kind.PHYSICS,
+            meaning=meaning,
+            span=span,
+            grid=grid,
+            neutral=0.0,
+            change=lambda variant, value: change(variant.with_inputs(_PRESCRIBED), value),
+            words=f"{meaning}: {{value}}",
+            applies=applies,
+        )
+
+    pitches = f"about {_ENDS[0]:g} to {_ENDS[-1]:g} base pitches"
+    yield fixed(
+        "zones of contact",
+        "another contact ratio: zones exchanged, or the circular pitch for the base pitch",
+        "zones exchanged, circular pitch; from A, about the middle",
+        _contact_ratio,
+    )
+    yield fixed(
+        "line of action",
+        "a line of action at the pressure angle of the rack, or with other tip circles",
+        "of the rack; tips not shortened, without shift, of the rack",
+        _lines_of_action,
+    )
+    yield fixed(
+        "parts of the compliance",
+        "a part of the compliance of the energy method left out, halved or doubled",
+        "bending, shear, compression, foundation, contact (0, 0.5, 2); one tooth",
+        _parts,
+    )
+    yield fixed(
+        "table of the stiffness",
+        "a table of the mesh stiffness that is too coarse",
+        f"{min(map(abs, _TABLES))} to {max(map(abs, _TABLES))} entries a mesh cycle; lines, steps",
+        _tables,
+    )
+    yield fixed(
+        "peak at the pitch point",
+        "a parabola of the stiffness whose peak is at the pitch point",
+        "pitch point",
+        _peak_of_parabola,
+    )
+    yield free(
+        "peak of the parabola",
+        "the peak of the parabola of the stiffness further along, in half paths",
+        f"about {_PEAKS[0]:g} to {_PEAKS[-1]:g}",
+        _PEAKS,
+        lambda variant, value: variant.with_physics(peak=value),
+        _is_parabola,
+    )
+    yield free(
+        "contact ratio",
+        "the contact ratio larger, about the middle of the path, by",
+        pitches,
+        _ENDS,
+        lambda variant, value: variant.with_physics(path_start=-0.5 * value, path_end=0.5 * value),
+    )
+    yield free(
+        "end of the path of contact",
+        "a path of contact that ends later, in base pitches",
+        pitches,
+        _ENDS,
+        lambda variant, value: variant.with_physics(path_end=value),
+    )
+    yield free(
+        "start of the path of contact",
+        "a path of contact that starts later, in base pitches",
+        pitches,
+        _ENDS,
+        lambda variant, value: variant.with_physics(path_start=value),
+    )
+
+
+#: Causes that alter the path of contact and the origin of the stiffness.
+OF_PATH = tuple(_causes())
