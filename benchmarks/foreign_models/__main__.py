@@ -8,20 +8,21 @@ import warnings
 
 from benchmarks.foreign_models.cases import KINDS, cases
 from benchmarks.foreign_models.differences import differences
+from benchmarks.foreign_models.fifth import judging as fifth
 from benchmarks.foreign_models.fourth import judging as fourth
 from benchmarks.foreign_models.recipe import Recipe
 from benchmarks.foreign_models.second import held_back
 from benchmarks.foreign_models.third import judging
 
 #: The argument that takes another set than the first, and what lists its cases.
-OTHER_SETS = {"held_back": held_back, "judging": judging, "fourth": fourth}
+OTHER_SETS = {"held_back": held_back, "judging": judging, "fourth": fourth, "fifth": fifth}
 
 
 def main(arguments: list[str]) -> None:
     """Print a line for every case of the kinds, or whose name has a word of the arguments in it.
 
-    The argument "held_back" takes the second set instead of the first, "judging" the third and "fourth"
-    the fourth.
+    The argument "held_back" takes the second set instead of the first, "judging" the third, "fourth" the
+    fourth and "fifth" the fifth.
     """
     warnings.simplefilter("ignore")
     kinds = [word for word in arguments if word in KINDS]

@@ -18,13 +18,13 @@ from lumped.arguments import one_of, real_array
 from lumped.errors import refuse, shown
 from lumped.fields.units import SIValue, to_stated
 from lumped.friction import mean_coefficient
-from lumped.friction.average_coefficient import longer_path
+from lumped.friction.average_coefficient import longer_path, without_factor
 from lumped.friction.base import PITCH_RESOLUTION, ContactPath, FrictionLaw, FrictionSettings
 from lumped.friction.benedict_kelley import LAW as BENEDICT_KELLEY
 from lumped.friction.registry import law_of
 from lumped.model.mesh_cycle import MeshCycle
 from lumped.model.periodic_system import AnySupports, Supports, supports_of
-from lumped.path_of_contact.friction import contact_path, fit_law, violations_of
+from lumped.path_of_contact.friction import coefficient_for, contact_path, fit_law, violations_of
 from lumped.ranges import warn_violations
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import LARGEST_SPEED, GearPair
@@ -119,7 +119,8 @@ def _friction(variation: GearVariation, value: float) -> GearVariation:
         law = "coulomb"
         variation = replace(variation, pair=variation.pair.with_({"friction.law": law}))
     if law_of(variation.pair.friction).coefficient:
-        return replace(variation, pair=variation.pair.with_({"friction.coefficient": value}))
+        coefficient = coefficient_for(variation.pair, value)
+        return replace(variation, pair=variation.pair.with_({"friction.coefficient": coefficient}))
     return replace(variation, friction_mean=value)
 
 
@@ -375,9 +376,9 @@ class LawOverSpeed:
         return law is not None and law.coefficient and self.settings.coefficient is None and not self.to_mean
 
     def law_two(self) -> LawOverSpeed:
-        """Law II from A to D, where its mean is taken."""
+        """Law II from A to D, where its mean is taken, and as the mean is taken: without a factor."""
         ends = self.path.L_XA, self.path.L_XD
-        return LawOverSpeed(self.path, ends, self.settings, BENEDICT_KELLEY, to_mean=False)
+        return LawOverSpeed(without_factor(self.path), ends, self.settings, BENEDICT_KELLEY, to_mean=False)
 
     def shifts_alone(self, reference: float, rpm: float) -> bool:
         """Whether mu at a speed is mu at a reference speed, apart from a factor and a constant."""
@@ -434,7 +435,7 @@ class LawOverSpeed:
             unit = law.factor(reference_path, self.settings)
             weights = law.factor(path, self.settings) / unit if unit else 1.0, 0.0
         elif law.shift is not None:
-            weights = 1.0, law.shift(path, self.settings) - law.shift(reference_path, self.settings)
+            weights = 1.0, law.rise(path, self.settings) - law.rise(reference_path, self.settings)
         else:
             return None
         if law.factor is not None and law is self.law:

@@ -133,7 +133,7 @@ class FrictionBetweenSpeeds:
         if law is None or not self.one_law(low, high):
             return None
         if self.law.mean_is_of_law_two(self.reference):  # which falls with speed
-            deviation = law.average_slope * _FIT_ERRORS * self.length
+            deviation = law.change_by_average(self.law.path) * _FIT_ERRORS * self.length
             return SpeedPatch(self.reference, None, self._power(law), deviation)
         if law.shift is not None:
             return self._shifted(law, Speeds(low, high))
@@ -195,7 +195,8 @@ class FrictionBetweenSpeeds:
         at_low, at_high = (clipped_lengths(law_two, rpm) for rpm in speeds)
         share = (at_low.upper + max(at_high.zero - at_low.zero, 0.0)) / (law_two.ends[1] - law_two.ends[0])
         of_mean = 0.5 * abs(_rise(law_two, *speeds)) * share + _FIT_ERRORS
-        return SpeedPatch(self.reference, None, factors, law.average_slope * of_mean * self.length)
+        deviation = law.change_by_average(self.law.path) * of_mean * self.length
+        return SpeedPatch(self.reference, None, factors, deviation)
 
     def _shifted(self, law: FrictionLaw, speeds: Speeds) -> SpeedPatch:
         """Law II: |mu| rises as a whole, but where it is clipped at a speed or at the reference speed.
@@ -248,12 +249,9 @@ class FrictionBetweenSpeeds:
         if not math.isfinite(total):
             return None
         level = float(at_middle.largest.mean())
-        shift = self._law_two.shift
-        assert shift is not None
-        at_reference = shift(*self.law.where_friction_acts(reference))
-        each = (shift(*self.law.where_friction_acts(speeds.high)) - at_reference) / math.log(
-            speeds.high / reference
-        )
+        at_reference = self._law_two.rise(*self.law.where_friction_acts(reference))
+        to_end = self._law_two.rise(*self.law.where_friction_acts(speeds.high)) - at_reference
+        each = to_end / math.log(speeds.high / reference)
 
         def factors(rpm: FloatArray) -> FloatArray:
             rises = each * np.log(rpm / reference)
@@ -344,7 +342,7 @@ class FrictionBetweenSpeeds:
         path, settings = self.law.where_friction_acts(rpm)
         reference_path, _ = self.law.where_friction_acts(reference)
         if law.shift is not None:
-            return Change(0.0, abs(law.shift(path, settings) - law.shift(reference_path, settings)))
+            return Change(0.0, abs(law.rise(path, settings) - law.rise(reference_path, settings)))
         if law.factor is None:
             return Change(math.inf, 0.0)
         unit = law.factor(reference_path, settings)
@@ -430,9 +428,8 @@ def _ranges(fit: PathFunction, xi: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 def _rise(law_two: LawOverSpeed, low: float, high: float) -> float:
     """By how much |mu| of law II rises from a speed to another speed where it is not clipped."""
-    shift = law_two.law.shift
-    assert shift is not None
-    return shift(law_two.at(high), law_two.settings) - shift(law_two.at(low), law_two.settings)
+    at_low, at_high = (law_two.law.rise(law_two.at(rpm), law_two.settings) for rpm in (low, high))
+    return at_high - at_low
 
 
 def clipped_lengths(law_two: LawOverSpeed, rpm: float) -> ClippedLengths:

@@ -38,7 +38,7 @@ from lumped.errors import NumericalError, refuse
 from lumped.friction import mean_coefficient
 from lumped.labelling import labelled_dataset, provenance
 from lumped.model.periodic_system import Supports, on_springs
-from lumped.path_of_contact import friction_path_function
+from lumped.path_of_contact.friction import coefficient_for, friction_path_function
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import LARGEST_SPEED, GearPair
 from lumped.typing import ComplexArray, FloatArray, ProgressRequest
@@ -489,7 +489,12 @@ def stability_margins(
     rpm = operating_rpm(pair)
     damping_ratio = pair.mesh.damping_ratio
     coefficient = mean_coefficient(friction_path_function(pair))
-    constant = pair.with_({"friction.law": "coulomb", "friction.coefficient": coefficient})
+    constant = pair.with_(
+        {
+            "friction.law": "coulomb",
+            "friction.coefficient": coefficient_for(pair, coefficient),
+        }
+    )
     radius = _radius(constant)
     lines = np.array(list(predicted_lines(constant, _ORDERS).values()))
 

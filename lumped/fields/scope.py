@@ -20,12 +20,14 @@ class Limit:
     names : keys of gear programs for the feature
     stems : words that mean the feature in any key: "helix" in ``pinion.helix_angle``
     sentence : what spurcheck models instead, and what to do
+    keys : keys of a file that are refused with the sentence, for the tests
     """
 
     subject: str
     names: tuple[str, ...]
     stems: tuple[str, ...]
     sentence: str
+    keys: tuple[str, ...]
 
 
 HELICAL = Limit(
@@ -34,12 +36,14 @@ HELICAL = Limit(
     ("helix",),
     "Gears are spur gears; helical ones are not computed, nor by their transverse section. Delete it where "
     "it is 0.",
+    ("helix_angle", "pinion.helix", "pinion.beta"),
 )
 INTERNAL = Limit(
     "internal gears",
     ("internal", "internal_gear", "is_internal", "annulus"),
     ("ring",),
     "Both gears are external; a gear with internal teeth (a negative number of teeth) is not computed.",
+    ("internal", "gear.ring_gear"),
 )
 SEVERAL_MESHES = Limit(
     "several meshes",
@@ -47,6 +51,7 @@ SEVERAL_MESHES = Limit(
     ("idler", "idlers"),
     "A file has one mesh of two gears. Compute each mesh as a pair of its own; how meshes act on each other "
     "through a shared gear or shaft is not computed.",
+    ("stages", "gear.idler"),
 )
 PLANETARY = Limit(
     "planetary stages",
@@ -54,6 +59,7 @@ PLANETARY = Limit(
     ("planet", "planets", "planetary"),
     "Planetary stages are not computed: one pinion drives one external gear. The mesh of sun and planet "
     "alone can be computed as a pair, on fixed axes and with its share of the torque.",
+    ("planets", "number_of_planets", "planet_carrier.teeth"),
 )
 CROWNING = Limit(
     "crowning",
@@ -61,6 +67,7 @@ CROWNING = Limit(
     ("crown", "crowning", "crowned"),
     "The mesh is plane: the load is even over the face width, and crowning does not act. Delete it; "
     "tip_relief and root_relief change the profile.",
+    ("pinion.crowning",),
 )
 LEAD = Limit(
     "lead corrections",
@@ -68,6 +75,7 @@ LEAD = Limit(
     ("lead",),
     "The mesh is plane: flanks are straight and parallel over the face width. Delete it; deviations of "
     "single teeth go into deviations.",
+    ("gear.lead_slope",),
 )
 MISALIGNMENT = Limit(
     "misalignment",
@@ -75,6 +83,7 @@ MISALIGNMENT = Limit(
     ("misalign", "misaligned", "misalignment"),
     "The axes are parallel and the load is even over the face width. Delete it; the run-out of a gear is "
     "mounting.eccentricity in its section, and mesh.stiffness_factor makes the mesh softer.",
+    ("mesh.misalignment", "shafts.misalignment_angle"),
 )
 
 #: Everything that a drawing may have and no file, in the order of the page of limits.

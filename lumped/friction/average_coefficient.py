@@ -1,7 +1,8 @@
 """The coefficient mu_avg of laws I and IV: as given, else the mean of |mu| of law II from A to D.
 
 A factor on mu_avg belongs into `average_coefficient`, and there only: laws I, IV and V, charts over speed and
-the bound of `lumped.path_of_contact.friction.friction_misfit` read mu_avg from that function.
+the bound of `lumped.path_of_contact.friction.friction_misfit` read mu_avg from that function. A factor on mu
+of every law is not in mu_avg, see ``ContactPath.friction_factor``.
 
 Sources: Abbas Al-Zubaidi 2008, section 2.3 (docs/theory/friction.md, "The laws").
 """
@@ -37,8 +38,18 @@ def average_coefficient(path: ContactPath, settings: FrictionSettings) -> float:
 
 
 def mean_of_law_two(path: ContactPath, settings: FrictionSettings) -> float:
-    """Mean of |mu| of law II from A to D [-]; ``ContactPath.law_two_mean`` where the path states the mean."""
-    return _computed_mean(path, settings) if path.law_two_mean is None else path.law_two_mean
+    """Mean of |mu| of law II from A to D [-]; ``ContactPath.law_two_mean`` where the path states the mean.
+
+    The mean is without ``ContactPath.friction_factor``: the law that reads the mean applies the factor.
+    """
+    if path.law_two_mean is not None:
+        return path.law_two_mean
+    return _computed_mean(without_factor(path), settings)
+
+
+def without_factor(path: ContactPath) -> ContactPath:
+    """The contact in which mu of every law is that of its formula."""
+    return replace(path, friction_factor=1.0)
 
 
 @lru_cache(maxsize=256)

@@ -36,7 +36,8 @@ MEAN_COEFFICIENT = ValidityRange(
 _SEARCH_POINTS = 400
 _SAMPLED_POSITIONS = 201
 _ROOT_TOLERANCE = 1e-14  # relative, of the distance from the pitch point
-#: `FrictionLaw.roundings` of a law: the exponent of law III is near 9, and each power adds 20.
+#: `FrictionLaw.roundings` of a law: the exponent of law III is near 9, each power adds 20, and the product
+#: with `ContactPath.friction_factor` adds 1.
 ROUNDINGS = 400.0
 
 
@@ -60,6 +61,8 @@ class ContactPath:
         an undercut. A contact of the edge further outside has the friction of the end of the involute.
     law_two_mean : mean of |mu| of law II from A to D [-], where the path is longer than from A to D, see
         `lumped.friction.average_coefficient`. None: the mean is that over this path.
+    friction_factor : factor on mu of every law [-], positive, the same at every position, speed and load. A
+        `FrictionLaw` applies the factor, and nothing else does. mu_avg is without the factor.
     """
 
     L_XA: float
@@ -80,6 +83,7 @@ class ContactPath:
     edge_pinion: float = 0.0
     edge_gear: float = 0.0
     law_two_mean: float | None = None
+    friction_factor: float = 1.0
 
     def at_speed(self, omega_pinion: float) -> ContactPath:
         """The same contact at another speed of the pinion [rad/s].
@@ -233,6 +237,10 @@ class FrictionLaw:
     The rest of the program assumes nothing about a law but what this record says. Each property has a test
     over all registered laws, ``tests/lumped/friction/test_law_properties.py``.
 
+    The fields describe the formula. A pair has mu of the formula times ``ContactPath.friction_factor``:
+    `signed`, `rise`, `change_by_average` and `most_around` include this factor, and whatever uses a law calls
+    these. Switches, the ratio of mu at two speeds and the parts of a law are the same with any factor.
+
     Attributes
     ----------
     name : as in parameter files
@@ -287,7 +295,25 @@ class FrictionLaw:
 
     def signed(self, xi: FloatArray, path: ContactPath, settings: FrictionSettings) -> FloatArray:
         """Signed mu at positions [-]. Beyond the edge of an undercut mu is the value at the edge."""
-        return self.formula(path.between_edges(xi), path, settings)
+        return path.friction_factor * self.formula(path.between_edges(xi), path, settings)
+
+    def rise(self, path: ContactPath, settings: FrictionSettings) -> float:
+        """Number by which |mu| rises as a whole over speed, ``shift`` of a law that has it [-]."""
+        assert self.shift is not None
+        return path.friction_factor * self.shift(path, settings)
+
+    def change_by_average(self, path: ContactPath) -> float:
+        """Bound on |d mu/d mu_avg| [-]."""
+        return path.friction_factor * self.average_slope
+
+    def most_around(
+        self, low: FloatArray, high: FloatArray, path: ContactPath, settings: FrictionSettings
+    ) -> tuple[FloatArray, FloatArray] | None:
+        """Ratio of ellipses (k,) around pieces, and a bound on |mu| in these (k,), see ``analytic``."""
+        if self.analytic is None:
+            return None
+        ratio, most = self.analytic(low, high, path, settings)
+        return ratio, path.friction_factor * most
 
     def reads_average(self, path: ContactPath, settings: FrictionSettings) -> bool:
         """Whether mu_avg acts somewhere on a path. A law made of others: in a part that is in force."""

@@ -112,9 +112,10 @@ def fit_misfit(
 ) -> FloatArray:
     """PROVEN bound (m,) on |mu - function| on each piece of a fit; 0 for a law that has no formula."""
     low, high = function.breaks[:-1], function.breaks[1:]
-    if law.analytic is None:
+    around = law.most_around(low, high, path, settings)
+    if around is None:
         return np.zeros(low.size)
-    ratio, most = law.analytic(low, high, path, settings)
+    ratio, most = around
     half = 0.5 * (high - low)
     width = high - low
     xi = 0.5 * (low + high)[:, None] + half[:, None] * _NODES

@@ -24,7 +24,8 @@ from lumped.friction.smoothed_coulomb import LAW as SMOOTHED_COULOMB
 from lumped.friction.table import TABLE
 from lumped.friction.xu_kahraman import LAW as XU_KAHRAMAN
 
-_NONE = FrictionLaw(
+#: The law "none": mu is 0.
+NO_FRICTION = FrictionLaw(
     name="none",
     label="no friction",
     formula=lambda xi, path, settings: np.zeros_like(xi),
@@ -37,13 +38,21 @@ _NONE = FrictionLaw(
 LAWS: Mapping[str, FrictionLaw] = MappingProxyType(
     {
         law.name: law
-        for law in (_NONE, COULOMB, BENEDICT_KELLEY, XU_KAHRAMAN, SMOOTHED_COULOMB, COMPOSITE, ISO_14179)
+        for law in (
+            NO_FRICTION,
+            COULOMB,
+            BENEDICT_KELLEY,
+            XU_KAHRAMAN,
+            SMOOTHED_COULOMB,
+            COMPOSITE,
+            ISO_14179,
+        )
     }
 )
 
 
 #: Names of the laws with friction that need no table.
-FRICTIONAL = tuple(name for name in LAWS if name != _NONE.name)
+FRICTIONAL = tuple(name for name in LAWS if name != NO_FRICTION.name)
 #: Every name of ``friction.law``.
 NAMES = (*LAWS, TABLE)
 

@@ -46,8 +46,8 @@ class IsoDynamicFactor:
 def iso_dynamic_factor(pair: GearPair, tolerance_class: int = ASSUMED_TOLERANCE_CLASS) -> IsoDynamicFactor:
     """Return K_v by ISO 6336-1 method B, for a tolerance class of ISO 1328-1, 1 to 11.
 
-    The stiffness is that of the standard: neither the pair's stiffness model nor ``mesh.stiffness_factor``
-    changes K_v.
+    The stiffness is that of the standard: neither the pair's stiffness model nor a factor on its stiffness
+    (``lumped.path_of_contact.stiffness.FACTORS``) changes K_v.
     """
     g = pair.geometry
     b = bodies_of(pair)

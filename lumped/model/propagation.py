@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+import itertools
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, partial
 
 import numpy as np
 
 from lumped.errors import NumericalError, SlowPairError
 from lumped.gauss_legendre import ButcherTableau, gauss_tableau
+from lumped.mesh.records import BY_APPROACH, BY_RATE
 from lumped.model.kernels import FreeSteps, chained, merged, propagate, states_along
 from lumped.model.mesh_cycle import is_edge
 from lumped.model.periodic_system import LTVSystem
+from lumped.model.speeds_together import MeshTimes, forces_together
 from lumped.typing import FloatArray, IntArray
 
 #: Largest angle per step of the fastest frequency [rad]. With 4 stages (order 8) the local error constant is
@@ -30,6 +33,10 @@ _BLOCK = 1024
 _MOST_STORED = 4_000_000
 _MOST_INTERVALS = 16384
 _ALWAYS_STORED = 4096
+#: Lengths of steps whose steps without the mesh are computed at once: so few numbers stay in the cache.
+_LENGTHS = 48
+#: Most steps of systems that are computed together: their numbers then stay in the cache of a processor.
+_TOGETHER_STEPS = 1024
 #: Most steps of a mesh cycle; so many take some ten seconds.
 _MAX_STEPS = 1_000_000
 #: Most stretches of the mesh cycle on which the stiffness is evaluated, beside those between switches.
@@ -57,6 +64,11 @@ class Steps:
     moving: IntArray
     inside: FloatArray
     teeth: FloatArray
+
+    def part(self, low: int, high: int) -> Steps:
+        """Return the steps from ``low`` to before ``high``."""
+        at = slice(low, high)
+        return Steps(self.length[at], self.maps[at], self.moving, self.inside[at], self.teeth[:, :, at])
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,14 +132,26 @@ def fastest_frequency(system: LTVSystem) -> float:
     Frozen-time eigenvalues at the stiffest of three times on each polynomial piece; where pieces are many, on
     each stretch of several without a jump.
     """
+    return float(fastest_frequencies([system])[0])
+
+
+def fastest_frequencies(systems: Sequence[LTVSystem]) -> FloatArray:
+    """``fastest_frequency`` (systems,) of systems that go together, see ``goes_with`` [rad/s]."""
+    system = systems[0]
     breaks = system.cycle.breaks
     marks = np.union1d(system.cycle.edges, breaks[:: -(-breaks.size // _MOST_LOOKS)])
     times = (marks[:-1] + np.multiply.outer([0.05, 0.5, 0.95], np.diff(marks))).ravel()
     segment = np.searchsorted(system.cycle.edges, times, side="right") - 1
-    gain = system.gain(times, segment)
-    stiffest = [np.argmax(np.abs(gain.stiffness @ system.deflection))]
-    values = np.linalg.eigvals(system.with_feedback(gain.stiffness[stiffest], gain.damping[stiffest])[0])
-    return float(np.abs(values).max()) * 1.1
+    each = np.arange(len(systems))
+    clock = np.array([one.period / system.period for one in systems])
+    owner = np.repeat(each, times.size)
+    at = MeshTimes(np.outer(clock, times).ravel(), np.tile(segment, each.size), owner)
+    forces, _ = forces_together(systems, at)
+    by_part = forces.view(np.float64).reshape(each.size, times.size, 3, -1) @ system.directions
+    stiffest = np.argmax(np.abs(by_part[:, :, BY_APPROACH] @ system.deflection), axis=1)
+    gain = by_part[each, stiffest]
+    frozen = system.with_feedback(gain[:, BY_APPROACH], gain[:, BY_RATE])
+    return np.asarray(np.abs(np.linalg.eigvals(frozen)).max(axis=1) * 1.1, dtype=np.float64)
 
 
 def step_maps(
@@ -148,35 +172,112 @@ def step_maps(
     every_step : whether every step is an interval; where these would fill the memory, a few steps are
     step_angle : largest angle of the fastest frequency per step [rad]
     """
-    grid = _step_grid(system, np.empty(0) if outputs is None else outputs, every_step, step_angle)
-    forcings = 1 + extra.shape[1]
-    extra = padded(system, extra)
-    first, length_of_step = distinct_lengths(system, grid.length)
-    free = without_mesh(system, grid.length[first], extra, gauss_tableau(stages), system.directions)
+    marks = _marks(system, np.empty(0) if outputs is None else outputs)
+    grid = _step_grid(marks, 1.0, fastest_frequency(system), every_step, step_angle)
+    maps = _maps_over([(system, grid)], extra, stages)[0]
+    if isinstance(maps, NumericalError):
+        raise maps
+    return maps
 
-    count = grid.length.size
-    few = count <= max(_ALWAYS_STORED, _MOST_STORED // free.along[0].size)
+
+def step_maps_together(
+    systems: Sequence[LTVSystem], extra: FloatArray, outputs: FloatArray, step_angle: float = STEP_ANGLE
+) -> Iterator[StepMaps | NumericalError]:
+    """Yield the ``step_maps`` of systems that go together, or why there are none. Every step is an interval.
+
+    Parameters
+    ----------
+    systems : systems that go together, see ``goes_with``
+    extra, step_angle : as of ``step_maps``
+    outputs : times of the first system that end an interval [s]; the others end one at the same positions
+    """
+    marks = _marks(systems[0], outputs)
+    waiting: list[tuple[LTVSystem, _StepGrid]] = []
+    for system, fastest in zip(systems, fastest_frequencies(systems).tolist(), strict=True):
+        grid: _StepGrid | NumericalError
+        try:
+            grid = _step_grid(marks, system.period / systems[0].period, fastest, True, step_angle)
+        except SlowPairError as error:
+            grid = error
+        steps = 0 if isinstance(grid, NumericalError) else grid.length.size
+        full = steps + sum(one.length.size for _, one in waiting) > _TOGETHER_STEPS
+        if waiting and (full or isinstance(grid, NumericalError)):
+            yield from _maps_over(waiting, extra, STAGES)
+            waiting = []
+        if isinstance(grid, NumericalError):
+            yield grid
+        else:
+            waiting.append((system, grid))
+    if waiting:
+        yield from _maps_over(waiting, extra, STAGES)
+
+
+def _maps_over(
+    members: Sequence[tuple[LTVSystem, _StepGrid]], extra: FloatArray, stages: int
+) -> list[StepMaps | NumericalError]:
+    """Maps of systems that go together, each over its grid. Those of several systems are stored."""
+    systems = [system for system, _ in members]
+    grids = [grid for _, grid in members]
+    system = systems[0]
+    extra_columns = padded(system, extra)
+    owner = np.repeat(np.arange(len(grids)), [grid.length.size for grid in grids])
+    length = np.concatenate([grid.length for grid in grids])
+    start = np.concatenate([grid.edges[:-1] for grid in grids])
+    segment = np.concatenate([grid.segment for grid in grids])
+    distinct, length_of_step = _lengths_of(systems, grids)
+    free = without_mesh(system, distinct, extra_columns, gauss_tableau(stages), system.directions)
+
+    count = length.size
+    few = len(grids) > 1 or count <= max(_ALWAYS_STORED, _MOST_STORED // free.along[0].size)
     together = count if few else _BLOCK  # stored steps in one block: their maps need not be copied
 
     def steps() -> Iterator[Steps]:
         for low in range(0, count, together):
-            block = slice(low, low + together)
-            start = grid.edges[:-1][block]
-            yield _steps(system, grid.segment[block], start, grid.length[block], length_of_step[block], free)
+            at = slice(low, low + together)
+            places = MeshTimes(start[at], segment[at], owner[at])
+            yield _steps(systems, places, length[at], length_of_step[at], free)
 
-    stored = list(steps()) if few else None
+    if not few:
+        return [_merged_steps(grids[0], 1 + extra.shape[1], steps)]
+    (stored,) = steps()
+    ends = np.cumsum([0, *(grid.length.size for grid in grids)]).tolist()
+    of_grids = [[stored.part(low, high)] for low, high in itertools.pairwise(ends)]
+    return [
+        _merged_steps(grid, 1 + extra.shape[1], partial(iter, own))
+        for grid, own in zip(grids, of_grids, strict=True)
+    ]
+
+
+def _lengths_of(systems: Sequence[LTVSystem], grids: Sequence[_StepGrid]) -> tuple[FloatArray, IntArray]:
+    """Distinct lengths of the steps of all grids [s], and the index of the length of every step."""
+    distinct: list[FloatArray] = []
+    index: list[IntArray] = []
+    count = 0
+    for system, grid in zip(systems, grids, strict=True):
+        first, length_of_step = distinct_lengths(system, grid.length)
+        distinct.append(grid.length[first])
+        index.append(length_of_step + count)
+        count += first.size
+    return np.concatenate(distinct), np.concatenate(index)
+
+
+def _merged_steps(
+    grid: _StepGrid, forcings: int, steps: Callable[[], Iterable[Steps]]
+) -> StepMaps | NumericalError:
+    """Maps over the intervals of a grid, from its steps in blocks."""
     parts = []
     groups = []
     low = 0
-    for block in stored or steps():
-        group = grid.interval[low : low + together]
+    for block in steps():
+        group = grid.interval[low : low + block.length.size]
         parts.append(merged(block.maps, group - group[0]))
         groups.append(np.unique(group))
-        low += together
+        low += block.length.size
     maps = merged(np.concatenate(parts), np.concatenate(groups)) if len(parts) > 1 else parts[0]
     if not np.isfinite(maps).all():
-        raise NumericalError("The mesh cycle cannot be integrated: check stiffness and inertia for extremes.")
-    return StepMaps(grid.edges, grid.times, forcings, maps, steps if stored is None else lambda: stored)
+        text = "The mesh cycle cannot be integrated: check stiffness and inertia for extremes."
+        return NumericalError(text)
+    return StepMaps(grid.edges, grid.times, forcings, maps, steps)
 
 
 def padded(system: LTVSystem, extra: FloatArray) -> FloatArray:
@@ -185,9 +286,8 @@ def padded(system: LTVSystem, extra: FloatArray) -> FloatArray:
 
 
 def _steps(
-    system: LTVSystem,
-    segment: IntArray,
-    start: FloatArray,
+    systems: Sequence[LTVSystem],
+    start: MeshTimes,
     h: FloatArray,
     length_of_step: IntArray,
     free: FreeSteps,
@@ -204,11 +304,13 @@ def _steps(
     p_i = u.W_i. So each step solves s equations instead of s m, for all unit states and forcings that move
     the teeth.
     """
+    system = systems[0]
     n = system.size
     k = h.size
     stages = free.reach.shape[1]
-    times = (start[:, None] + h[:, None] * gauss_tableau(stages).c).ravel()
-    forces, pairs = system.mesh_forces(times, np.repeat(segment, stages))
+    times = (start.time[:, None] + h[:, None] * gauss_tableau(stages).c).ravel()
+    at_stages = MeshTimes(times, np.repeat(start.segment, stages), np.repeat(start.owner, stages))
+    forces, pairs = forces_together(systems, at_stages)
     strength = forces.view(np.float64).reshape(k, 1, stages, 3, -1)
     units = np.eye(free.along.shape[1])
     # A column moves the teeth by its approach, by an acceleration along the approach, or by forces at rest.
@@ -254,6 +356,22 @@ def without_mesh(
     directions : (forces, m) acceleration of the coordinates per unit of each force
     with_rates : whether the rates of all coordinates at the stages are further rows
     """
+    parts = [
+        _block_without_mesh(system, h[low : low + _LENGTHS], extra, gauss, directions, with_rates)
+        for low in range(0, h.size, _LENGTHS)
+    ]
+    return parts[0] if len(parts) == 1 else FreeSteps(*map(np.concatenate, zip(*parts, strict=True)))
+
+
+def _block_without_mesh(
+    system: LTVSystem,
+    h: FloatArray,
+    extra: FloatArray,
+    gauss: ButcherTableau,
+    directions: FloatArray,
+    with_rates: bool,
+) -> FreeSteps:
+    """``without_mesh`` of few lengths."""
     a, b, c = gauss
     s = c.size
     m = system.size // 2
@@ -342,29 +460,63 @@ class _StepGrid:
     times: FloatArray
 
 
-def _step_grid(system: LTVSystem, outputs: FloatArray, every_step: bool, step_angle: float) -> _StepGrid:
-    """Steps that end at the outputs, where a law is not smooth, and where the pieces of a law are short."""
-    period = system.period
-    switches = system.cycle.edges
+@dataclass(frozen=True, eq=False)
+class _Marks:
+    """Times at which steps end in any case, and the joints of pieces between them.
+
+    Attributes
+    ----------
+    system : the system, on whose clock all times are
+    outputs : times that end an interval [s]
+    times : (marks,) where a law is not smooth, and the outputs [s]
+    joints : (joints,) inner breaks of the laws [s]
+    shorter : (joints,) length of the shorter piece beside each joint [s]
+    gap : (joints,) length of the gap between two times in which each joint lies [s]
+    """
+
+    system: LTVSystem
+    outputs: FloatArray
+    times: FloatArray
+    joints: FloatArray
+    shorter: FloatArray
+    gap: FloatArray
+
+
+def _marks(system: LTVSystem, outputs: FloatArray) -> _Marks:
+    """Times at which steps end in any case."""
     breaks = system.cycle.breaks
-    marks = np.union1d(switches, system.cycle.bends)
-    largest = step_angle / fastest_frequency(system)
+    marks = np.union1d(system.cycle.edges, system.cycle.bends)
     marks = _distinct(np.union1d(marks, outputs), system)
-    # A smooth law has short pieces where it varies fast: steps end at joints of short pieces.
     pieces = np.diff(breaks)
     gaps = np.diff(marks)
     gap_of_joint = np.clip(np.searchsorted(marks, breaks[1:-1], side="right") - 1, 0, gaps.size - 1)
-    short = np.minimum(pieces[:-1], pieces[1:]) < _SHORT_PIECE * np.minimum(gaps, largest)[gap_of_joint]
-    marks = _distinct(np.union1d(marks, breaks[1:-1][short]), system)
-    parts = np.maximum(1.0, np.ceil(np.diff(marks) / largest))
+    shorter = np.minimum(pieces[:-1], pieces[1:])
+    return _Marks(system, outputs, marks, breaks[1:-1], shorter, gaps[gap_of_joint])
+
+
+def _step_grid(at: _Marks, clock: float, fastest: float, every_step: bool, step_angle: float) -> _StepGrid:
+    """Steps that end at the outputs, where a law is not smooth, and where the pieces of a law are short.
+
+    ``clock`` is the period over that of ``at.system``, ``fastest`` the ``fastest_frequency``.
+    """
+    period = at.system.period
+    switches = at.system.cycle.edges
+    marks = at.times
+    largest = step_angle / fastest / clock
+    # A smooth law has short pieces where it varies fast: steps end at joints of short pieces.
+    short = at.shorter < _SHORT_PIECE * np.minimum(at.gap, largest)
+    if short.any():
+        marks = _distinct(np.union1d(marks, at.joints[short]), at.system)
+    gaps = np.diff(marks)
+    parts = np.maximum(1.0, np.ceil(gaps / largest))
     if not parts.sum() <= _MAX_STEPS:
         raise SlowPairError(
-            f"A mesh cycle of {period:.3g} s takes {parts.sum():.3g} steps at the fastest vibration, more "
-            f"than {_MAX_STEPS}: raise the speed, or lower stiffness or damping where they are extreme."
+            f"A mesh cycle of {clock * period:.3g} s takes {parts.sum():.3g} steps at the fastest vibration, "
+            f"more than {_MAX_STEPS}: raise the speed, or lower stiffness or damping where they are extreme."
         )
     count = parts.astype(np.int64)
     first = np.concatenate([[0], np.cumsum(count)])
-    length = np.repeat(np.diff(marks) / count, count)
+    length = np.repeat(gaps / count, count)
     number = np.arange(first[-1]) - np.repeat(first[:-1], count)
     edges = np.append(np.repeat(marks[:-1], count) + length * number, period)
     if every_step:
@@ -373,14 +525,14 @@ def _step_grid(system: LTVSystem, outputs: FloatArray, every_step: bool, step_an
         ends[first[1:] - 1] = True
     else:
         ends = np.zeros(length.size, dtype=bool)
-        ends[first[np.searchsorted(marks, outputs[outputs > 0.0] - 1e-13 * period)] - 1] = True
+        ends[first[np.searchsorted(marks, at.outputs[at.outputs > 0.0] - 1e-13 * period)] - 1] = True
         ends[-1] = True
     return _StepGrid(
-        edges=edges,
-        length=length,
+        edges=edges * clock,
+        length=length * clock,
         segment=np.searchsorted(switches, edges[:-1], side="right") - 1,
         interval=np.cumsum(ends) - ends,
-        times=np.append(0.0, edges[1:][ends]),
+        times=np.append(0.0, edges[1:][ends] * clock),
     )
 
 

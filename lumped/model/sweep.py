@@ -21,7 +21,7 @@ from lumped.model.mesh_cycle import MeshCycle
 from lumped.model.periodic_system import LTVSystem, Supports, supports_of
 from lumped.model.powers import balance
 from lumped.model.results import farthest_reversal, load_range
-from lumped.model.steady import periodic_solution, sample_times
+from lumped.model.steady import solutions_over_speed
 from lumped.model.steady_state import periodic_motion
 from lumped.path_of_contact import friction_path_function
 from lumped.ranges import warned_once
@@ -140,10 +140,8 @@ _Motion = tuple[Mapping[str, FloatArray], Mapping[str, float]]
 
 def _linear_motions(pairs: Iterable[GearPair], supports: Supports, samples: int) -> Iterator[_Motion | None]:
     """Yield the linear motions of like teeth; None at a speed without periodic motion."""
-    for system in systems_over_speed(pairs, supports):
-        try:
-            solution = periodic_solution(system, sample_times(system.period, samples), estimate_error=False)
-        except NumericalError:
+    for solution in solutions_over_speed(systems_over_speed(pairs, supports), samples):
+        if solution is None:
             yield None
             continue
         numbers = {f"{name}_peak_to_peak": value for name, value in solution.peak_to_peak.items()}

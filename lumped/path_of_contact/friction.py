@@ -15,7 +15,7 @@ import numpy as np
 
 from lumped.arguments import whole_number
 from lumped.errors import ParameterError, refuse
-from lumped.friction.average_coefficient import average_coefficient, longer_path
+from lumped.friction.average_coefficient import average_coefficient, longer_path, without_factor
 from lumped.friction.base import ContactPath, FrictionLaw, FrictionSettings, fit_signed, mean_coefficient
 from lumped.friction.benedict_kelley import LAW as BENEDICT_KELLEY
 from lumped.friction.benedict_kelley import friction_number
@@ -91,20 +91,28 @@ def friction_misfit(pair: GearPair, interval: tuple[float, float] | None = None)
     """Bound on the error of `friction_path_function` on each of its pieces (m,), see `fit_misfit`.
 
     Where mu_avg is the mean of law II, the bound includes the error of this mean times the law's
-    ``average_slope``.
+    ``change_by_average``.
     """
     path, law = _contact(pair, None, interval)
     settings: FrictionSettings = pair.friction
     bounds = fit_misfit(fit_law(path, settings, law.name), law, path, settings)
     if settings.coefficient is None and law.reads_average(path, settings):
-        nominal = contact_path(pair)
+        nominal = without_factor(contact_path(pair))
         law_two = fit_signed(BENEDICT_KELLEY, nominal, settings)
         of_pieces = fit_misfit(law_two, BENEDICT_KELLEY, nominal, settings)
         of_mean = float(of_pieces @ np.diff(law_two.breaks)) / (nominal.L_XD - nominal.L_XA)
         # mu_avg is proportional to the mean of law II: the error of the mean gives the error of mu_avg.
         of_average = average_coefficient(replace(nominal, law_two_mean=of_mean), settings)
-        bounds = bounds + law.average_slope * of_average
+        bounds = bounds + law.change_by_average(path) * of_average
     return bounds
+
+
+def coefficient_for(pair: GearPair, mean: float) -> float:
+    """Return the ``friction.coefficient`` with which |mu| of law I is this mean [-].
+
+    The factors of a file (`lumped.schema.friction.FACTORS`) act on a given coefficient too.
+    """
+    return mean / contact_path(pair).friction_factor
 
 
 def law_range_violations(pair: GearPair, law: str | None = None) -> tuple[RangeViolation, ...]:
@@ -128,11 +136,18 @@ def fit_law(path: ContactPath, settings: FrictionSettings, name: str) -> PathFun
     return fit_signed(law, path, settings)
 
 
+@lru_cache(maxsize=256)
+def _largest_mu(law: FrictionLaw, path: ContactPath, settings: FrictionSettings) -> float:
+    """Largest mu of a law at the sampled positions of a path [-]."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        return float(np.abs(law.signed(path.sampled_positions, path, settings)).max())
+
+
 def _must_be_friction(path: ContactPath, settings: FrictionSettings, law: FrictionLaw) -> None:
     """Refuse a law with mu above 1, as law III has in thin oil under high pressure."""
-    xi = path.sampled_positions
-    with np.errstate(over="ignore", invalid="ignore"):
-        largest = float(np.abs(law.signed(xi, path, settings)).max())
+    scaled = law.over_speed(path, settings)
+    at_fit_speed, factor = (path, 1.0) if scaled is None else scaled
+    largest = factor * _largest_mu(law, at_fit_speed, settings)
     if not largest <= 1.0:
         reasons = "; ".join(map(str, violations_of(path, settings, law.name))) or "no range of it was left"
         raise refuse(

@@ -5,6 +5,9 @@ Sources: each model names its own; docs/theory/mesh_physics.md, "Stiffness of a 
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,13 +24,21 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-def stiffness_factor(pair: GearPair) -> float:
-    """Factor on the stiffness k_i of a tooth pair that the model gives: the product of all factors of a file.
+#: Every factor on the stiffness k_i that a model gives: field of a file -> factor of a pair [-], positive.
+#: Stiffness, contact and coupling of tooth pairs have it, in the multibody model too, which reads these
+#: three. The stiffness of ISO 6336-1 in K_v and the components of the energy method are without it.
+FACTORS: Mapping[str, Callable[[GearPair], float]] = MappingProxyType(
+    {
+        "mesh.stiffness_factor": lambda pair: pair.mesh.stiffness_factor,
+    }
+)
+#: What is said of a stiffness without these factors.
+WITHOUT_FACTORS = f"without {' and '.join(FACTORS)}"
 
-    A further factor on k belongs here. Stiffness, contact and coupling of tooth pairs then have it, in
-    the multibody model too, which reads these three.
-    """
-    return pair.mesh.stiffness_factor
+
+def stiffness_factor(pair: GearPair) -> float:
+    """Factor on the stiffness k_i of a tooth pair that the model gives: the product of all `FACTORS`."""
+    return math.prod((factor(pair) for factor in FACTORS.values()), start=1.0)
 
 
 def pair_stiffness(pair: GearPair) -> PathFunction:
@@ -38,7 +49,7 @@ def pair_stiffness(pair: GearPair) -> PathFunction:
 def contact_softening(pair: GearPair) -> float:
     """Return D in 1/k(T) = 1/k(T_0) - D ln(T/T_0) of a pair [m/N]: the compliance falls with the load.
 
-    ``mesh.stiffness_factor`` divides the compliance and so D.
+    `stiffness_factor` divides the compliance and so D.
     """
     return pair.mesh.stiffness.softening(pair) / stiffness_factor(pair)
 
@@ -51,8 +62,8 @@ def cross_compliances(pair: GearPair) -> tuple[PathFunction, ...]:
 def stiffness_components(pair: AnyPair, points: int = 201) -> xr.Dataset:
     """Components of the potential-energy stiffness over the path of contact, contact by Weber and Banaschek.
 
-    The components are those of the method, without ``mesh.stiffness_factor``, which is a factor on the
-    stiffness of the pair's own model.
+    The components are those of the method, without ``mesh.stiffness_factor`` and any other of `FACTORS`.
+    These factors act on the stiffness of the model of the pair.
 
     Parameters
     ----------
@@ -97,7 +108,7 @@ def stiffness_components(pair: AnyPair, points: int = 201) -> xr.Dataset:
         },
     )
     for name in ("compliance", "stiffness"):
-        result[name].attrs["note"] = "of the method, without mesh.stiffness_factor"
+        result[name].attrs["note"] = f"of the method, {WITHOUT_FACTORS}"
     return result
 
 

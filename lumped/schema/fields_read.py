@@ -8,12 +8,12 @@ translated into fields. All other fields are read always.
 from __future__ import annotations
 
 from lumped.friction.benedict_kelley import LAW as BENEDICT_KELLEY
-from lumped.friction.registry import law_of
+from lumped.friction.registry import NO_FRICTION, law_of
 from lumped.friction.table import TABLE
 from lumped.schema.assumed import WORDS, within
 from lumped.schema.changes import fields_of
 from lumped.schema.files import AnyPair, load_gear_pair
-from lumped.schema.friction import FRICTION_FIELDS
+from lumped.schema.friction import FRICTION_FIELDS, fields_of_factors
 from lumped.schema.pair import GearPair, field_values
 from lumped.stiffness.base import TOOTH_FORM
 
@@ -77,16 +77,18 @@ def _both(fields: set[str]) -> set[str]:
 
 def _of_friction(pair: GearPair) -> set[str]:
     friction = pair.friction
-    if friction.law == TABLE:
-        return {"friction.table"}
     law = law_of(friction)
+    if law is NO_FRICTION:
+        return set()
+    if friction.law == TABLE:
+        return {"friction.table"} | fields_of_factors()
     names = set(FRICTION_FIELDS) if law.reads is None else set(law.reads)
     if "coefficient" in names and friction.coefficient is None:
         names |= BENEDICT_KELLEY.reads or set()
     fields = {field for name in names for field in FRICTION_FIELDS[name]}
     if friction.composite_roughness is not None and "roughness" not in names:
         fields.discard("gears.roughness")  # the film has its own
-    return fields
+    return fields | fields_of_factors()
 
 
 def _of_bodies(pair: GearPair) -> set[str]:

@@ -3,7 +3,8 @@
 A law reads two things: the fields of the section ``friction``, and the nominal contact,
 ``lumped.friction.base.ContactPath``. A value of another section (gears, lubricant, operating point) comes to
 the laws as a field of the nominal contact, in `nominal_contact` and nowhere else. `FRICTION_FIELDS` says from
-which fields of a file each of these values comes.
+which fields of a file each of these values comes. A factor on mu of every law is an entry of `FACTORS`; the
+nominal contact has the product of all.
 
 Sources: Abbas Al-Zubaidi 2008, eqs. 5 and 11 to 15 (docs/theory/friction.md).
 """
@@ -11,6 +12,8 @@ Sources: Abbas Al-Zubaidi 2008, eqs. 5 and 11 to 15 (docs/theory/friction.md).
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Annotated, Self
 
 from pydantic import BeforeValidator, Field, model_validator
@@ -96,6 +99,33 @@ FRICTION_FIELDS: dict[str, tuple[str, ...]] = {
 }
 
 
+@dataclass(frozen=True)
+class FrictionFactor:
+    """A factor on mu of every law, of the table of a user too.
+
+    The factor acts on mu after the law and its bounds. It is the same at every position, speed and load, so
+    that switches of mu, parts of a law and the change of mu with speed stay those of the law.
+
+    Attributes
+    ----------
+    value : (gears, lubricant, friction) -> factor [-], positive
+    reads : fields of a parameter file that decide the value; "gears" are both gears
+    """
+
+    value: Callable[[tuple[Gear, Gear], Lubricant, Friction], float]
+    reads: tuple[str, ...]
+
+
+#: Every factor on mu. No field of a file is one yet. CONTRIBUTING.md, "A factor on mu of every law", has the
+#: steps, tests/lumped/friction/test_factors.py the tests.
+FACTORS: tuple[FrictionFactor, ...] = ()
+
+
+def fields_of_factors() -> set[str]:
+    """Fields of a parameter file on which mu of every law depends."""
+    return {field for factor in FACTORS for field in factor.reads}
+
+
 def nominal_contact(
     g: Geometry, gears: tuple[Gear, Gear], lubricant: Lubricant, friction: Friction, torque: float
 ) -> ContactPath:
@@ -133,4 +163,5 @@ def nominal_contact(
         film_length=friction.film_length,
         edge_pinion=g.undercut_pinion,
         edge_gear=g.undercut_gear,
+        friction_factor=math.prod((one.value(gears, lubricant, friction) for one in FACTORS), start=1.0),
     )

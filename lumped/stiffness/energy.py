@@ -241,8 +241,8 @@ def _elastic(pair: MeshingPair) -> tuple[tuple[float, float], tuple[float, float
 def weber_banaschek_softening(pair: MeshingPair) -> float:
     """D of Weber and Banaschek's contact in 1/k(T) = 1/k(T_0) - D ln(T/T_0) [m/N].
 
-    D is without ``mesh.stiffness_factor``; `lumped.path_of_contact.stiffness.contact_softening` applies the
-    factor.
+    D is without the factors of a file on the stiffness;
+    `lumped.path_of_contact.stiffness.contact_softening` applies these.
     """
     return softening(*_elastic(pair)) / pair.geometry.face_width
 

@@ -179,15 +179,16 @@ class SurfaceMotion(NamedTuple):
 def friction_size(
     machine: Record, table: FloatArray, surface: SurfaceMotion, distance: float, load: float
 ) -> float:
-    """Size of the friction coefficient by ``magnitude``; of a law without a formula by the lumped ``table``.
+    """Size of the friction coefficient: ``magnitude`` times the factor on mu.
 
-    ``distance`` is as in ``magnitude`` but with its sign, ``load`` is the load per face width [N/m].
+    A law without a formula is read from the lumped ``table``, which has the factor. ``distance`` is as in
+    ``magnitude`` but with its sign, ``load`` is the load per face width [N/m].
     """
     if machine.friction.law == TABLE:
         return abs(table_value(table, machine.geometry.L_XP + distance))
     sliding = abs(surface.sliding)
     mu = magnitude(machine.friction, sliding, surface.rolling, surface.rho_p, surface.rho_g, distance, load)
-    return float(mu)
+    return float(machine.friction.factor * mu)
 
 
 @called
@@ -277,6 +278,7 @@ def fill_friction(pair: GearPair, packed: FloatArray) -> None:
     width = min(pair.pinion.face_width, pair.gear.face_width)
     roughness = (pair.pinion.roughness, pair.gear.roughness)
     composite = section.composite_roughness
+    f.factor = 1.0  # for the mean of law II, which is without the factor
     f.sharpness = section.sharpness
     f.maximum = section.maximum
     f.boundary, f.mixed, _ = section.thresholds
@@ -300,6 +302,15 @@ def fill_friction(pair: GearPair, packed: FloatArray) -> None:
     elif name in ("coulomb", "smoothed_coulomb", "composite"):
         f.mean = _mean_of_law_two(packed)
     f.law = LAWS.get(name, TABLE)
+    f.factor = _factor_on_mu(pair)
+
+
+def _factor_on_mu(pair: GearPair) -> float:
+    """Factor on the coefficient of every law by the fields of the file, without ``lumped``.
+
+    No field is such a factor yet. The lumped model has its factors in ``lumped.schema.friction.FACTORS``.
+    """
+    return 1.0
 
 
 def _iso_14179(machine: Record) -> float:

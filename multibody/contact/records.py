@@ -90,7 +90,8 @@ PAIR_LAW = record(
 #: Parameters of the friction laws, see ``multibody.contact.friction``.
 FRICTION = record(
     law=_I,  # code of the law
-    mean=_F,  # mu_avg of laws I and IV, or the mean coefficient of ISO/TR 14179-2 [-]
+    factor=_F,  # factor on the coefficient of every law [-]
+    mean=_F,  # mu_avg of laws I and IV, or the mean coefficient of ISO/TR 14179-2, without the factor [-]
     sharpness=_F,  # Phi of law IV [1/m]
     maximum=_F,  # upper bound of law II [-]
     boundary=_F,  # film parameter below which law V takes law IV [-]

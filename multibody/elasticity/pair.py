@@ -153,14 +153,17 @@ def compared_places(elastic: ElasticPair, phases: int) -> FloatArray:
 
 
 def _factor_on_stiffness(pair: GearPair) -> float:
-    """Factor of the file on the stiffness of a tooth pair: the fields of the schema, without ``lumped``."""
+    """Factor of the file on the stiffness of a tooth pair, from the fields of the schema.
+
+    The lumped model has its factors in ``lumped.path_of_contact.stiffness.FACTORS``.
+    """
     return pair.mesh.stiffness_factor
 
 
 def pair_compliance(elastic: ElasticPair, place: FloatArray, load: float) -> FloatArray:
     """Compliance of one tooth pair under a load [N], at places on the line of action [m/N].
 
-    ``mesh.stiffness_factor`` of the file is applied.
+    The factor of the file on the stiffness is applied.
     """
     model = elastic.pair.mesh.stiffness
     if model.model == "finite_elements":
@@ -194,7 +197,7 @@ def neighbours_coupled(elastic: ElasticPair) -> bool:
 def neighbour_motion(elastic: ElasticPair, pitches: int, place: FloatArray) -> FloatArray:
     """Motion of the pair so many base pitches ahead by a unit load on the pair at a place [m/N].
 
-    The motions of both gears add. ``mesh.stiffness_factor`` of the file is applied.
+    The motions of both gears add. The factor of the file on the stiffness is applied.
     """
     distance = pitches * elastic.circles.pitch
     tangent = elastic.circles.tangent

@@ -17,7 +17,7 @@ LOOSE = {
 }  # fmt: skip
 #: Folders of tests that belong to no single package.
 QUESTIONS = {"meta", "packaging", "docs", "examples", "hardening", "evidence", "reproductions",
-             "unlike_pairs", "guards"}  # fmt: skip
+             "friction_factors", "unlike_pairs", "guards"}  # fmt: skip
 #: Lines of a file, docstrings and blank lines included.
 LONGEST = {"library": 700, "tests": 700}
 

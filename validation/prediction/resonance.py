@@ -18,7 +18,7 @@ import numpy as np
 from lumped.errors import NumericalError
 from lumped.model.averaged import Mode, modes
 from lumped.model.periodic_system import Supports
-from lumped.model.steady import periodic_solution, sample_times
+from lumped.model.steady import solutions_over_speed
 from lumped.model.sweep import systems_over_speed
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
@@ -204,12 +204,8 @@ def _linear_motions(
 ) -> Iterable[Mapping[str, FloatArray] | None]:
     """Linear motions over a mesh cycle at each speed. None: there is no motion at the speed."""
     pairs = [pair.at_speed(float(rpm)) for rpm in speeds_rpm]
-    for system in systems_over_speed(pairs, supports, warn=False):
-        times = sample_times(system.period, _TIMES)
-        try:
-            yield periodic_solution(system, times, estimate_error=False).values
-        except NumericalError:
-            yield None
+    for solution in solutions_over_speed(systems_over_speed(pairs, supports, warn=False), _TIMES):
+        yield None if solution is None else solution.values
 
 
 def _forces(motion: Mapping[str, FloatArray]) -> FloatArray:

@@ -30,7 +30,7 @@ from lumped.display.progress import reported_to, shows_progress
 from lumped.errors import LawRangeWarning, NumericalError, SpurcheckError, refuse
 from lumped.labelling import Variable, labelled_dataset, provenance
 from lumped.model.periodic_system import Supports, supports_of, with_supports
-from lumped.model.steady import periodic_solution, sample_times
+from lumped.model.steady import solutions_over_speed
 from lumped.model.sweep import systems_over_speed
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.meeting_teeth import period_of
@@ -379,13 +379,10 @@ def _peaks(pair: GearPair, speeds_rpm: FloatArray, step_angle: float) -> FloatAr
     """Peak to peak of the linear transmission error at each speed [m]; NaN: there is no motion."""
     pairs = [pair.at_speed(float(rpm)) for rpm in speeds_rpm]
     sizes = np.full(len(pairs), np.nan)
-    for j, system in enumerate(systems_over_speed(pairs, "springs", warn=False)):
-        times = sample_times(system.period, _TIMES)
-        try:
-            motion = periodic_solution(system, times, estimate_error=False, step_angle=step_angle)
-        except NumericalError:
-            continue
-        sizes[j] = motion.peak_to_peak_of("dte")
+    systems = systems_over_speed(pairs, "springs", warn=False)
+    for j, motion in enumerate(solutions_over_speed(systems, _TIMES, step_angle=step_angle)):
+        if motion is not None:
+            sizes[j] = motion.peak_to_peak_of("dte")
     return sizes
 
 

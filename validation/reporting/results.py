@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from contextlib import suppress
 from functools import cached_property
 from typing import Any, NamedTuple, Self, TypeVar, overload
 
@@ -21,7 +20,7 @@ from lumped.labelling import labelled_dataset
 from lumped.model.averaged import Mode, modes
 from lumped.model.periodic_system import LTVSystem, without_shafts
 from lumped.model.propagation import fastest_frequency
-from lumped.model.steady import periodic_solution, sample_times
+from lumped.model.steady import solutions_over_speed
 from lumped.model.sweep import resolved_sweep, systems_over_speed
 from lumped.outcomes import Absent, Outcome
 from lumped.schema.pair import GearPair
@@ -462,10 +461,10 @@ class Results:
         speeds = np.linspace(*self.speeds, self.effort.orders_speeds)
         pairs = [self.pair.at_speed(float(rpm)) for rpm in speeds]
         rows = np.full((speeds.size, ORDERS), np.nan)
-        for row, system in zip(rows, systems_over_speed(pairs, "springs", warn=False), strict=True):
-            times = sample_times(system.period, 128)
-            with suppress(NumericalError):
-                run = periodic_solution(system, times, estimate_error=False).values
+        systems = systems_over_speed(pairs, "springs", warn=False)
+        for row, solution in zip(rows, solutions_over_speed(systems, 128), strict=True):
+            if solution is not None:
+                run = solution.values
                 row[:] = np.hypot(*(mesh_orders(run[f"bearing_force_{line}_p"]) for line in "xy"))
         return labelled_dataset(
             {"amplitude": (("speed_rpm", "order"), rows, "N", "force on the pinion bearings")},

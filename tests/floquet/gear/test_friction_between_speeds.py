@@ -16,6 +16,7 @@ from floquet.rank_one.kernels.gains import Point
 from floquet.rank_one.period_search import PatchSystem
 from lumped import load_gear_pair
 from lumped.friction.registry import LAWS
+from tests.friction_factors import example_factor, with_factor
 from tests.unlike_pairs import UNLIKE, unlike_pair
 
 PAIRS = ("fzg_c", *(name for name in UNLIKE if "shafts" not in name))
@@ -94,6 +95,35 @@ def test_no_speed_of_an_interval_deviates_more_than_the_bound(name: str, law: st
                 max(deviation(between, ends, rpm) for rpm in (low, high))
                 <= ends.deviation + 2e-10 * between.length
             )
+
+
+@pytest.mark.parametrize("factor", [0.63, 1.7])
+@pytest.mark.parametrize("law", ["coulomb", "benedict_kelley", "composite"])
+def test_a_factor_on_mu_is_in_the_bounds(law: str, factor: float) -> None:
+    """All of mu, its rise and its deviations are those without the factor, times the factor."""
+    name = "heavily_relieved_under_load"
+    with example_factor():
+        plain, scaled = (
+            FrictionBetweenSpeeds(
+                GearVariation.of(
+                    with_factor(unlike_pair(name).healthy, one, **NO_PARAMETERS | {"friction.law": law}),
+                    "springs",
+                )
+            )
+            for one in (1.0, factor)
+        )
+        low = 1.1 * plain.reference
+        for high in (1.003 * low, 1.2 * low):
+            one, other = (between.patch(low, high) for between in (plain, scaled))
+            if one is None or other is None:
+                assert one is other
+                continue
+            worst = max(deviation(scaled, other, float(rpm)) for rpm in np.linspace(low, high, 5))
+            assert worst <= other.deviation + 2e-10 * scaled.length
+            rpm = np.array([low, high])
+            np.testing.assert_allclose(other.factors(rpm), one.factors(rpm), rtol=1e-6)
+            fits = 2e-9 * scaled.length  # errors of fits are absolute
+            assert other.deviation == pytest.approx(factor * one.deviation, rel=1e-3, abs=fits)
 
 
 def test_bounds_are_small_where_little_of_the_path_is_clipped_and_near_the_truth_where_much_is() -> None:

@@ -7,6 +7,7 @@ import pytest
 from lumped import stiffness_components
 from lumped.model.dynamic_factor import iso_dynamic_factor
 from lumped.path_of_contact import pair_stiffness
+from lumped.path_of_contact.stiffness import WITHOUT_FACTORS
 from lumped.stiffness.iso6336 import pair_single_stiffness
 from tests.guards.by_hand import ByHand, Contact
 from tests.unlike_pairs import unlike_pair
@@ -65,10 +66,10 @@ def test_at_the_resonance_the_larger_gear_may_drive():
 def test_a_factor_on_the_model_s_stiffness_changes_no_number_of_the_standard():
     """K_v and the components of the method have stiffnesses of their own; a stiffer pair is another curve."""
     pair = unlike_pair("rack_25_degrees_always_pushing")
-    stiffer = pair.with_(mesh__stiffness_factor=1.3)
+    stiffer = pair.with_(mesh__stiffness_factor=1.3)  # every other factor acts by the same function
     assert iso_dynamic_factor(stiffer) == iso_dynamic_factor(pair)
     ours, theirs = (stiffness_components(one) for one in (stiffer, pair))
     assert (ours.stiffness.to_numpy() == theirs.stiffness.to_numpy()).all()
-    assert all("without mesh.stiffness_factor" in ours[name].attrs["note"] for name in ours)
+    assert all(WITHOUT_FACTORS in ours[name].attrs["note"] for name in ours)
     xi = theirs.position.to_numpy()[3:-3]
     assert pair_stiffness(stiffer)(xi) == pytest.approx(1.3 * pair_stiffness(pair)(xi), rel=1e-14)

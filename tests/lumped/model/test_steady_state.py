@@ -147,7 +147,8 @@ def test_an_unstable_periodic_motion_says_so(high_contact):
     for place in (worst, int(np.argmin(radii))):
         unstable = pair.with_(operating__pinion_speed=float(speeds[place]))
         motion = steady_state(unstable, samples_per_cycle=8)
-        assert motion.attrs["spectral_radius"] == radii[place]
+        # Speeds of a sweep are computed together, on the clock of the first: times are rounded once more.
+        assert motion.attrs["spectral_radius"] == pytest.approx(radii[place], rel=1e-12)
         start = np.array([float(motion[n][0]) for n in list(motion)[:12]])
         start[2:4] += 1e-6, -1e-6
         run = simulate(unstable, 200, samples_per_cycle=8, initial=start)

@@ -20,12 +20,16 @@ def test_every_speed_is_its_own_periodic_solution(published):
         for name in ("dte", "x_p", "x_g", "y_p", "y_g"):
             values = run[name].to_numpy()
             assert float(sweep[f"{name}_rms"][j]) == pytest.approx(
-                math.sqrt(np.mean((values - values.mean()) ** 2)), rel=1e-12
+                math.sqrt(np.mean((values - values.mean()) ** 2)), rel=1e-11
             )
-        assert float(sweep["dte_peak_to_peak"][j]) == run.attrs["dte_peak_to_peak"]
         loads = run["normal_load"].to_numpy()[run["contact"].to_numpy() > 0]
-        assert float(sweep["normal_load_max"][j]) == loads.max()
-        assert float(sweep["normal_load_min"][j]) == loads.min()
+        # Speeds are computed together, on the clock of the first: times are rounded once more.
+        for name, value in (
+            ("dte_peak_to_peak", run.attrs["dte_peak_to_peak"]),
+            ("normal_load_max", loads.max()),
+            ("normal_load_min", loads.min()),
+        ):
+            assert float(sweep[name][j]) == pytest.approx(value, rel=1e-11)
         assert float(sweep["mesh_efficiency"][j]) == pytest.approx(run.attrs["mesh_efficiency"], rel=1e-14)
 
 

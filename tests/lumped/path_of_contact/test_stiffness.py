@@ -1,9 +1,12 @@
 """Do the labelled views of the stiffness hold together?"""
 
+import numpy as np
 import pytest
 
 from lumped import geometry, load_gear_pair, mesh_stiffness, stiffness_components
 from lumped.path_of_contact import pair_stiffness
+from lumped.path_of_contact.stiffness import FACTORS, contact_softening, cross_compliances, stiffness_factor
+from multibody.elasticity.pair import _factor_on_stiffness
 
 
 def test_components_add_up_to_the_pair_of_the_energy_model(unlike):
@@ -44,3 +47,27 @@ def test_a_thin_rim_is_flagged_once_by_every_computed_stiffness(stiffness):
     thin = pair.with_(gear__bore=72.0)
     (rim,) = thin.mesh.stiffness.violations(thin)
     assert rim.law == "rim of the gear"
+
+
+#: Field of each factor on k -> a value that acts, and the factor with it, computed by hand.
+ACTING = {"mesh.stiffness_factor": (0.83, 0.83)}
+
+
+@pytest.mark.parametrize("field", FACTORS)
+def test_a_factor_is_its_number_by_hand_on_all_that_a_pair_gives_and_in_both_models(unlike, field):
+    """k with it, the growth of k with load and the coupling of pairs, which are compliances, by it."""
+    value, by_hand = ACTING[field]
+    assert by_hand != pytest.approx(1.0, abs=0.05)
+    pair = unlike.with_({"mesh.stiffness": {"model": "finite_elements"}})
+    other = pair.with_({field: value})
+    factor = stiffness_factor(other) / stiffness_factor(pair)
+    assert factor == pytest.approx(by_hand, rel=1e-9)
+    assert _factor_on_stiffness(other) / _factor_on_stiffness(pair) == pytest.approx(by_hand, rel=1e-9)
+    k = pair_stiffness(pair)
+    low, high = k.interval
+    xi = low + (high - low) * np.linspace(0.01, 0.99, 23)
+    assert pair_stiffness(other)(xi) == pytest.approx(by_hand * k(xi), rel=1e-9)
+    assert contact_softening(other) == pytest.approx(contact_softening(pair) / by_hand, rel=1e-9)
+    assert len(cross_compliances(pair)) > 0
+    for before, after in zip(cross_compliances(pair), cross_compliances(other), strict=True):
+        assert after(xi) == pytest.approx(before(xi) / by_hand, rel=1e-9, abs=1e-25)

@@ -322,21 +322,20 @@ def test_a_guess_of_the_user_stays_a_guess():
 
 # ---- what is not computed ---------------------------------------------------------------------------------
 
-_KEYS = [
-    ("helix_angle", 0), ("pinion.helix", 0), ("pinion.beta", 0), ("internal", 1), ("gear.ring_gear", 1),
-    ("planets", 3), ("number_of_planets", 3), ("planet_carrier.teeth", 3), ("pinion.crowning", 4),
-    ("gear.lead_slope", 5), ("mesh.misalignment", 6), ("shafts.misalignment_angle", 6),
-]  # fmt: skip
 
-
-@pytest.mark.parametrize(("key", "limit"), _KEYS)
+@pytest.mark.parametrize(("key", "limit"), [(key, limit) for limit in LIMITS for key in limit.keys])
 def test_a_key_of_what_is_not_computed_has_its_sentence(key, limit):
-    sentence = re.escape(LIMITS[limit].sentence)
+    sentence = re.escape(limit.sentence)
     base = unlike_pair("contact_ratio_2_3_on_shafts")
     with pytest.raises(ParameterError, match=sentence):
         base.with_({key: 5})
     with pytest.raises(ParameterError, match=sentence):
         spurcheck.new_pair("21/43", **DRAWING, changes={key: 5})
+
+
+def test_every_limit_has_keys_and_a_sentence_of_its_own():
+    assert all(limit.keys for limit in LIMITS)
+    assert len({limit.sentence for limit in LIMITS}) == len(LIMITS)
 
 
 def test_keys_of_the_schema_have_no_such_sentence():

@@ -245,6 +245,7 @@ def test_every_name_of_the_contact_and_the_settings_has_its_fields():
         "edge_pinion",
         "edge_gear",
         "law_two_mean",
+        "friction_factor",  # of the fields of each factor, see tests/lumped/friction/test_factors.py
     }
     names = {*ContactPath.__dataclass_fields__} - always | {*FrictionSettings.__annotations__} - {"law"}
     assert names == {*FRICTION_FIELDS}

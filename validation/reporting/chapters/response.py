@@ -10,6 +10,7 @@ import numpy as np
 from lumped.labelling import labelled_dataset
 from lumped.model.averaged import Mode
 from lumped.model.dynamic_factor import iso_dynamic_factor
+from lumped.path_of_contact.stiffness import WITHOUT_FACTORS, stiffness_factor
 from validation.files.formatting import quantity
 from validation.plots.axes import cycle_figure
 from validation.plots.maps import orders_map_figure
@@ -85,8 +86,8 @@ def _motion_table(results: Results) -> Table:
     iso = iso_dynamic_factor(results.pair, max(classes)) if classes else iso_dynamic_factor(results.pair)
     tolerances = f"tolerances of class {iso.tolerance_class}{'' if classes else ' assumed'}"
     # K_v has the stiffness of the standard, which no factor on the model's stiffness changes.
-    if results.pair.mesh.stiffness_factor != 1.0:
-        tolerances += ", without mesh.stiffness_factor"
+    if stiffness_factor(results.pair) != 1.0:
+        tolerances += f", {WITHOUT_FACTORS}"
     iso_note = f"{iso.zone}, N = {iso.resonance_ratio:.2f}, {tolerances}"
     mean = float(prediction.cycle["dte"].mean())
     over_mean = "largest mesh force over the mean one"
