@@ -1,7 +1,7 @@
 """How well do 128 samples of the uncertain inputs tell the percentiles, and 32 samples the band over speed?
 
-    python -m benchmarks.bench_uncertainty [19/41] [31/57] [28/28] [shafts] [order] [band] [rank]
-        [--reference 4096]
+    python -m benchmarks.bench_uncertainty [19/41] [31/57] [28/28] [shafts] [order] [band] [rank] [classes]
+        [--reference 4096] [--pairs 0 20]
 
 The tables of docs/verification/uncertainty.md. Errors are root mean squares over the seeds, in per cent of
 the range from 5 to 95 % of the reference.
@@ -23,7 +23,18 @@ from floquet.gear.axes import speed_range
 from lumped import GearPair, load_gear_pair
 from validation.exchange.new_pair_file import new_pair
 from validation.prediction import uncertainty as module
-from validation.prediction.uncertainty import speed_band, uncertainty
+from validation.prediction.assumed_teeth import (
+    REVOLUTION,
+    WIDENED,
+    assumed_teeth,
+    has_range,
+    revolution_range,
+    widened,
+    with_assumed_class,
+)
+from validation.prediction.inputs import SEED_FIELDS, uncertain_inputs
+from validation.prediction.motion import predicted
+from validation.prediction.uncertainty import speed_band, uncertainty, varied
 
 BEARINGS = [{"position": z, "loa_stiffness": 2e8, "oloa_stiffness": 2e8} for z in (30, 150)]
 SHAFT = {"segments": [{"length": 300, "diameter": 30}], "gear_position": 90, "bearings": BEARINGS}
@@ -190,17 +201,57 @@ def rank(reference: int) -> None:
     line("from 20 to 80 %", *(f"{count} of {len(ranks)}" for count in inside), "")
 
 
-def main(names: Sequence[str], reference: int) -> None:
+#: Machines and processor time [s] of a full report with teeth of an assumed class; samples of inputs, fewer
+#: than in the report.
+MACHINES, LIMIT, FEW = 8, 15.0, 32
+
+
+def classes(first: int, last: int) -> None:
+    """Is a true machine inside the ranges of a report of a pair that states no tooth errors?
+
+    The true machine has drawn inputs and drawn teeth of class 6, other ones than the report draws, and moves
+    with unilateral contact.
+    """
+    names = (REVOLUTION, *WIDENED)
+    print("\nTrue machine of class 6 and its place: 0 is 5 %, 1 is 95 % of the range of page 1\n")
+    line("pair", "machines", *names, *(f"{name}, perfect teeth" for name in WIDENED))
+    inside = np.zeros((len(names) + len(WIDENED), 2), dtype=int)
+    for number, pair in enumerate(drawn_pairs()):
+        if not first <= number < last:
+            continue
+        result = uncertainty(pair, FEW)
+        teeth = assumed_teeth(pair, result, MACHINES, LIMIT)
+        rng = np.random.default_rng((DRAWN_SEED, number))
+        drawn = with_assumed_class(pair, *(int(one) for one in rng.integers(1, 2**31, 2)))
+        inputs = [one for one in uncertain_inputs(pair) if one.field not in SEED_FIELDS]
+        motion = predicted(varied(drawn, [(one, float(rng.random())) for one in inputs]))
+        true = {REVOLUTION: motion.peak_to_peak} | motion.numbers
+        ends = [revolution_range(teeth)[::2]] if has_range(teeth) else [(np.nan, np.nan)]
+        ends += [widened(result, teeth, name) for name in WIDENED]
+        ends += [tuple(ends_of(result, name)) for name in WIDENED]
+        places = [
+            (true[name] - low) / (high - low)
+            for name, (low, high) in zip((*names, *WIDENED), ends, strict=True)
+        ]
+        line(pair.name, f"{teeth.attrs['samples']} of {MACHINES}", *(f"{place:.2f}" for place in places))
+        known = np.isfinite(places)
+        inside += np.column_stack([known & (np.abs(np.array(places) - 0.5) <= 0.5), known])
+    line("inside", "", *(f"{count} of {total}" for count, total in inside.tolist()))
+
+
+def main(names: Sequence[str], reference: int, pairs: tuple[int, int]) -> None:
     warnings.simplefilter("ignore")
-    for name in names or (*PAIRS, "order", "band", "rank"):
-        {"order": order, "band": band, "rank": rank}.get(name, lambda n, name=name: samples(name, n))(
-            reference
-        )
+    tables = {"order": order, "band": band, "rank": rank, "classes": lambda _: classes(*pairs)}
+    for name in names or (*PAIRS, *tables):
+        tables.get(name, lambda n, name=name: samples(name, n))(reference)
 
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("names", nargs="*", metavar="TABLE", help="default all")
     parser.add_argument("--reference", type=int, default=4096, help="samples of the reference")
+    parser.add_argument(
+        "--pairs", nargs=2, type=int, default=(0, DRAWN), help="first pair, and pair to end at"
+    )
     given = parser.parse_args()
-    main(given.names, given.reference)
+    main(given.names, given.reference, tuple(given.pairs))

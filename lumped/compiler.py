@@ -28,7 +28,13 @@ from numba.core.serialize import dumps
 
 from lumped.cache import cache_folder, cores, read_whole, write_whole
 from lumped.compiler_flags import share_library_functions
-from lumped.kernel_stamps import UnknownDependencyError, compiled_behind, described, stamp_of
+from lumped.kernel_stamps import (
+    UnknownDependencyError,
+    compiled_behind,
+    described,
+    own_state_of,
+    stamp_of,
+)
 from lumped.linked_code import (
     LINKING_IS_KNOWN,
     LinkedCompiler,
@@ -126,7 +132,7 @@ class _KernelFiles(FunctionCache):  # type: ignore[misc]  # numba ships no types
     def __init__(self, dispatcher: Any) -> None:
         self._dispatcher = dispatcher
         self._py_func = dispatcher.py_func
-        self._first_stamp: str | None = None
+        self._first_state: Any = None
         self._compiling: dict[Any, Path] = {}
         self._held: dict[Path, filelock.BaseFileLock] = {}
         self.enable()
@@ -141,7 +147,7 @@ class _KernelFiles(FunctionCache):  # type: ignore[misc]  # numba ships no types
     def _path(self, sig: Any, codegen: Any) -> Path:
         function = self._py_func
         stamp = stamp_of(self._dispatcher)
-        self._first_stamp = self._first_stamp or stamp
+        self._first_state = self._first_state or stamp
         key = repr((stamp, described(sig), codegen.magic_tuple()))
         digest = hashlib.sha256(key.encode()).hexdigest()
         return kernel_folder() / stamp[:24] / f"{function.__name__}-{digest[:32]}.kernel"
@@ -181,7 +187,13 @@ class _KernelFiles(FunctionCache):  # type: ignore[misc]  # numba ships no types
         files = [
             one._cache for one in compiled_behind(self._dispatcher) if isinstance(one._cache, _KernelFiles)
         ]
-        return any(one._first_stamp not in (None, stamp_of(one._dispatcher)) for one in files)
+        return any(one._first_state not in (None, one._state()) for one in files)
+
+    def _state(self) -> Any:
+        """State of all source behind the function: code from the disk has functions in it that this process
+        has not compiled.
+        """
+        return stamp_of(self._dispatcher)
 
     def _hold(self, path: Path) -> bool:
         """Lock a kernel file: wait until no other process compiles the kernel, and make other processes wait.
@@ -218,7 +230,14 @@ class _NoFiles(_KernelFiles):
 
     def _load_overload(self, sig: Any, target_context: Any) -> None:
         with contextlib.suppress(UnknownDependencyError):
-            self._path(sig, target_context.codegen())
+            self._first_state = self._first_state or self._state()
+
+    def _state(self) -> Any:
+        """State of this function alone: those that it calls have theirs.
+
+        If every function looked at all below it, the work would grow with the square of their number.
+        """
+        return own_state_of(self._dispatcher)
 
     def _save_overload(self, sig: Any, data: Any) -> None:
         """Nothing: the callers are stored."""

@@ -26,6 +26,7 @@ def writers() -> Mapping[str, Callable[[], str]]:
     from computed import (
         agreement,
         answers,
+        calibration,
         diagrams,
         elasticity,
         errata,
@@ -55,6 +56,7 @@ def writers() -> Mapping[str, Callable[[], str]]:
             paper,
             vaishya_singh,
             rankings,
+            calibration,
             reference_cases,
             schema,
             interface,

@@ -275,6 +275,42 @@ def test_code_that_calls_older_linked_code_is_not_stored(package: Path, run: Run
     assert not list((tmp_path / "cache").rglob("late-*.kernel"))
 
 
+def test_older_linked_code_is_found_behind_linked_code(package: Path, run: Run, tmp_path: Path) -> None:
+    """A kernel calls a function that is up to date, and in which an older function is linked."""
+    called = "FACTOR = 2.0\n@compiled(no_cpython_wrapper=True)\ndef times(x):\n    return FACTOR * x"
+    middle = "@compiled(no_cpython_wrapper=True)\ndef middle(x):\n    return times(x)"
+    first, late = (f"@compiled\ndef {name}(x):\n    return middle(x)" for name in ("f", "late"))
+    _write(package, called=called, caller=f"from pkg.called import times\n{middle}\n{first}\n{late}")
+    assert run() == (2.0, 0)
+    _write(package, called=called.replace("2.0", "3.0"))
+    importlib.reload(sys.modules["pkg.called"])
+    assert sys.modules["pkg.caller"].late(1.0) == 2.0
+    assert not list((tmp_path / "cache").rglob("late-*.kernel"))
+
+
+def test_each_linked_function_is_looked_at_without_those_behind_it(
+    package: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A chain of 20 functions: were each looked at with all below it, the work would grow as 20 * 20 / 2."""
+    length = 20
+    chain = ["@compiled(no_cpython_wrapper=True)\ndef link_0(x):\n    return 2.0 * x"]
+    for n in range(1, length):
+        body = f"return link_{n - 1}(x)"
+        chain.append(f"@compiled(no_cpython_wrapper=True)\ndef link_{n}(x):\n    {body}")
+    _write(package, caller="\n".join([*chain, f"@compiled\ndef f(x):\n    return link_{length - 1}(x)"]))
+    looked: list[str] = []
+    plain = kernel_stamps._Dependencies._of_code
+
+    def counted(self: Any, code: Any, function: Any) -> Any:
+        looked.append(code.co_name)
+        return plain(self, code, function)
+
+    monkeypatch.setattr(kernel_stamps._Dependencies, "_of_code", counted)
+    assert run() == (2.0, 0)
+    assert looked.count("link_0") <= 6  # by the kernel and for its file name, and twice for itself
+    assert len(looked) <= 6 * (length + 1)
+
+
 def test_linked_code_works_in_a_process_that_finds_its_caller_on_the_disk(package: Path, run: Run) -> None:
     """The caller raises: for this its code looks for Python objects, one for each function."""
     check = "def checked(x):\n    if x > 2.0:\n        raise ValueError(x)\n    return x"

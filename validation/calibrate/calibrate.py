@@ -34,7 +34,7 @@ from validation.calibrate.discrepancy import (
 from validation.calibrate.fit import STARTS, Fit, Minimum, starts
 from validation.calibrate.forms import Form, forms_of, machine, numeric_inputs, pair_of
 from validation.calibrate.measured import Measured, measured_records
-from validation.calibrate.mixture import Component, component, draws, mixture, pareto_shape
+from validation.calibrate.mixture import Component, by_levels, component, draws, mixture, pareto_shape
 from validation.calibrate.posterior import RELIABLE, Machines, Posterior
 from validation.prediction.motion import predicted
 from validation.prediction.uncertain_input import Input
@@ -126,7 +126,9 @@ def calibrate(
         for form, one in minima
         for level, prior in levels.items()
     ]
-    components = mixture(_refined(first, pair, forms, inputs, data, factors, levels, steps))
+    first = by_levels(first, levels, values.size)
+    refined = _refined(first, pair, forms, inputs, data, factors, levels, steps)
+    components = mixture(by_levels(refined, levels, values.size))
     left = _machines(pair, inputs, data, components, factors, count, seed, steps)
     return Posterior(pair, inputs, data, components, left, discrepancy)
 

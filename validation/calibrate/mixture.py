@@ -10,13 +10,13 @@ Source: Laplace's method, MacKay, Information Theory, Inference, and Learning Al
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import cholesky
-from scipy.special import ndtri
-from scipy.stats import genpareto, qmc
+from scipy.special import logsumexp, ndtri
+from scipy.stats import chi2, genpareto, qmc
 
 from lumped.typing import FloatArray
 from validation.calibrate.fit import Minimum, whitened
@@ -74,6 +74,31 @@ def component(
     )
     weight = log_evidence + np.log(prior)
     return Component(form, level, np.clip(z, -LIMIT, LIMIT), covariance, float(weight), misfit, minimum)
+
+
+def by_levels(components: Sequence[Component], levels: Mapping[float, float], data: int) -> list[Component]:
+    """Return the components with the weights of the levels set by their prior and by the size of the misfit.
+
+    Within a level the evidence decides between forms and minima. Between levels it does not: orders that fit
+    would prove that the model is exact in all other results too, which is what made ranges wrong for records
+    of the multibody model. A level has its prior probability, times the probability that so large a misfit
+    happens by chance.
+
+    Parameters
+    ----------
+    levels : level -> prior probability
+    data : number of data
+    """
+    result = []
+    for level, prior in levels.items():
+        same = [one for one in components if one.level == level]
+        if not same:
+            continue
+        total = float(logsumexp([one.weight for one in same]))
+        misfit = min(one.chi_squared for one in same)
+        chance = max(float(chi2.logsf(misfit, data)), -0.5 * misfit)  # -inf for a misfit of many thousands
+        result += [replace(one, weight=one.weight - total + np.log(prior) + chance) for one in same]
+    return result
 
 
 def mixture(components: Sequence[Component]) -> tuple[Component, ...]:

@@ -347,7 +347,7 @@ class Posterior(DisplayedResult):
             lines.append(f"They do not know: {', '.join(self.not_identified)}.")
         if self.discrepancy:
             lines.append(
-                f"The model is taken to be off by about {100.0 * self.level:.0f} % of the largest order; "
+                f"The model may be off by about {100.0 * self.level:.0f} % of the largest order; "
                 "the ranges include this error."
             )
         else:

@@ -57,7 +57,8 @@ def compare(
 
     Every sample is a machine in which all variants run. A shared input has the same value in all variants.
     Inputs vary as in 'spurcheck uncertainty'. --speed, --torque, --law and --set change all variants.
-    A smaller result is better, but for the efficiency a larger value is better.
+    A smaller result is better, but for the efficiency a larger value is better. Without tooth errors in the
+    file the teeth are perfect here: only the report draws teeth of an assumed class.
 
     [bold]Examples[/bold]
     spurcheck compare mypair.toml other.toml

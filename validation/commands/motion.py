@@ -184,7 +184,8 @@ def uncertainty(
     r"""Predict a gear pair many times while its uncertain inputs vary.
 
     Inputs vary as the section \[uncertainty] of the file states, and by documented defaults where a value is
-    assumed. Teeth of a tolerance class are drawn anew in every sample.
+    assumed. Teeth of a tolerance class are drawn anew in every sample. Without tooth errors in the file the
+    teeth are perfect here: only the report draws teeth of an assumed class.
 
     [bold]Examples[/bold]
     spurcheck uncertainty my_pair.toml

@@ -48,6 +48,8 @@ TIP_LEVELS = 9
 _SHIFT_LEVELS = 3
 #: Seeds of random gears of a tolerance class run from 1 to here.
 _SEEDS = 2**31
+#: Inputs that draw the teeth of a tolerance class.
+SEED_FIELDS = tuple(f"{gear}.deviations.seed" for gear in ("pinion", "gear"))
 #: Field -> allowed names of a choice.
 _CHOICES: Mapping[str, tuple[str, ...]] = {"friction.law": tuple(LAWS), "mesh.stiffness": tuple(MODELS)}
 

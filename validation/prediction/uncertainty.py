@@ -36,7 +36,7 @@ from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.meeting_teeth import period_of
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray, ProgressRequest
-from validation.prediction.inputs import forms_beside, uncertain_inputs
+from validation.prediction.inputs import SEED_FIELDS, forms_beside, uncertain_inputs
 from validation.prediction.machines import errors_of, with_errors
 from validation.prediction.motion import ORDERS, QUANTITIES, Motion, Prediction, predicted
 from validation.prediction.uncertain_input import Input
@@ -46,6 +46,8 @@ from validation.signals.averages import GEARS, sidebands
 PERCENTILES = (5.0, 50.0, 95.0)
 #: Probability that a percentile lies in its interval.
 _SURE = 0.9
+#: Seed of the Sobol points where no samples at the operating speed state one.
+_SEED = 1
 #: Share of the samples that must have a motion.
 _LEAST = 0.5
 #: Least number of samples of a range where the time limit ended the samples: with 32 samples the interval
@@ -283,7 +285,7 @@ def speed_band(
     have a motion. Attributes ``taken``, the number of begun samples, and ``asked``, the number of requested
     samples
     """
-    sampled = _each_sample(
+    sampled = each_sample(
         pair, at_operating_speed, samples, lambda one: _peaks(one, speeds_rpm, step_angle), seconds
     )
     low = high = np.full(np.shape(speeds_rpm), np.nan)
@@ -308,7 +310,7 @@ def teeth_band(pair: GearPair, at_operating_speed: xr.Dataset, seconds: float | 
     longer period has fewer samples.
     """
     samples = max(_LEAST_DRAWN, min(_MOST_DRAWN, _ALL_CYCLES // period_of(pair)))
-    sampled = _each_sample(pair, at_operating_speed, samples, of_teeth, seconds)
+    sampled = each_sample(pair, at_operating_speed, samples, of_teeth, seconds)
     ends = np.full((2, len(TEETH)), np.nan)
     if len(sampled.results) >= least_samples(sampled.asked, LEAST_BAND):
         ends = np.percentile(np.array(sampled.results), PERCENTILES[::2], axis=0)
@@ -328,7 +330,7 @@ def sampled_predictions(
     The samples are fewer than in ``uncertainty``, which keeps numbers but no motions. 32 samples give a
     standard deviation to 13 %.
     """
-    sampled = _each_sample(
+    sampled = each_sample(
         pair, at_operating_speed, samples, lambda varied: predicted(varied.healthy), seconds
     )
     return Varied(predicted(pair.healthy), sampled.results, sampled.taken, sampled.asked)
@@ -339,22 +341,32 @@ def _counts(sampled: Sampled[T]) -> dict[str, int]:
     return {"samples": len(sampled.results), "taken": sampled.taken, "asked": sampled.asked}
 
 
-def _each_sample(
+def each_sample(
     pair: GearPair,
-    at_operating_speed: xr.Dataset,
+    at_operating_speed: xr.Dataset | None,
     samples: int,
     run: Callable[[GearPair], T],
     seconds: float | None,
 ) -> Sampled[T]:
-    """Results at samples of the inputs until the processor time [s] is over. ``run`` computes a machine."""
+    """Return results at samples of the inputs until the processor time [s] is over.
+
+    ``run`` computes a machine. ``at_operating_speed`` as in `speed_band`; None: the teeth of a tolerance
+    class alone are drawn, and all other inputs are as given.
+    """
     deadline = Deadline(seconds)
     inputs = uncertain_inputs(pair)
-    swing = np.ptp(np.nan_to_num(at_operating_speed["dte_peak_to_peak_swing"].to_numpy()), axis=1)
-    by_name = dict(zip(at_operating_speed["input"].to_numpy().tolist(), swing, strict=True))
-    importance = np.array([by_name.get(one.field, swing.max()) for one in inputs])
+    seed = _SEED
+    if at_operating_speed is None:
+        inputs = tuple(one for one in inputs if one.field in SEED_FIELDS)
+        importance = np.ones(len(inputs))
+    else:
+        swing = np.ptp(np.nan_to_num(at_operating_speed["dte_peak_to_peak_swing"].to_numpy()), axis=1)
+        by_name = dict(zip(at_operating_speed["input"].to_numpy().tolist(), swing, strict=True))
+        importance = np.array([by_name.get(one.field, swing.max()) for one in inputs])
+        seed = int(at_operating_speed.attrs["seed"])
     results = list[T]()
     taken = 0
-    for point in sobol_points(importance, samples, int(at_operating_speed.attrs["seed"])):
+    for point in sobol_points(importance, samples, seed):
         if deadline.passed:
             break
         taken += 1

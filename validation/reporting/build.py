@@ -286,6 +286,7 @@ def _write_data(results: Results, folder: Path) -> None:
         "second_program": lambda: _second_motion(results),
         "sweep": lambda: results.sweep,
         "uncertainty": lambda: results.uncertainty,
+        "assumed_teeth": lambda: _drawn_teeth(results),
         "budget": lambda: results.budget,
         "teeth": lambda: Absent(Outcome.ALIKE) if results.teeth is None else results.teeth.motion,
         "stability": lambda: results.chart,
@@ -304,6 +305,12 @@ def _write_data(results: Results, folder: Path) -> None:
             if not isinstance(data, Absent):
                 write_dataset(data, folder / f"{name}.nc")
     (folder / "parameters.toml").write_text(results.given.to_toml(), encoding="utf-8")
+
+
+def _drawn_teeth(results: Results) -> xr.Dataset | Absent:
+    """Machines with teeth drawn of an assumed class."""
+    teeth = results.assumed_teeth
+    return Absent(Outcome.NOT_ASKED) if teeth is None else teeth
 
 
 def _second_motion(results: Results) -> xr.Dataset | Absent:

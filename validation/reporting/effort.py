@@ -23,6 +23,9 @@ class Effort:
     sample_seconds : processor time of the samples [s]
     band_seconds : processor time of each range from ``band_samples`` [s]
     explain_seconds : processor time of the search for what a record that contradicts is compatible with [s]
+    drawn_machines : machines with teeth drawn of an assumed class, where the file states no tooth errors; 0:
+        the teeth are perfect in all results
+    drawn_seconds : processor time of these machines [s]
     """
 
     samples: int
@@ -38,7 +41,11 @@ class Effort:
     sample_seconds: float = 30.0
     band_seconds: float = 10.0
     explain_seconds: float = 20.0
+    drawn_machines: int = 0
+    drawn_seconds: float = 15.0
 
 
-FULL = Effort(128, 32, 41, 160, 1601, 101, 61, 30.0, 8, "full report")
-QUICK = Effort(0, 0, 0, 96, 401, 41, 25, 5.0, 0, "quick report", explain_seconds=5.0)
+FULL = Effort(128, 32, 41, 160, 1601, 101, 61, 30.0, 8, "full report", drawn_machines=8)
+QUICK = Effort(
+    0, 0, 0, 96, 401, 41, 25, 5.0, 0, "quick report", explain_seconds=5.0, drawn_machines=4, drawn_seconds=4.0
+)

@@ -14,14 +14,17 @@ from typing import Any
 import xarray as xr
 
 from lumped.outcomes import Absent
-from validation.files.formatting import number, quantity
+from validation.files.formatting import number, quantity, span
+from validation.prediction.assumed_teeth import LEAST_MACHINES, has_range, revolution_range
+from validation.prediction.motion import Motion
 from validation.prediction.resonance import Resonance
 from validation.prediction.uncertainty import LEAST_BAND, least_samples
 from validation.reporting.results import SHORT, Results
 from validation.reporting.second_program_words import second_program_words
 
-#: Keys of the facts on ranges whose computation the time limit ended; page 1 says each of them.
-RANGES = ("range_over_speed", "range_of_teeth", "range_beside_record")
+#: Keys of the facts on ranges; page 1 says each of them. All but "assumed_teeth" are about ranges whose
+#: computation the time limit ended.
+RANGES = ("range_over_speed", "range_of_teeth", "assumed_teeth", "range_beside_record")
 
 
 @dataclass(frozen=True)
@@ -104,6 +107,7 @@ def facts_of(results: Results) -> dict[str, Fact]:
         _samples(results),
         _range_over_speed(results),
         _range_of_teeth(results),
+        of_assumed_teeth(results),
         _range_beside_a_record(results),
         _trouble(results),
         _levels(results),
@@ -308,6 +312,52 @@ def _range_of_teeth(results: Results) -> Fact | None:
         return None
     scope = _scope(results, motion="linear motion")
     return _cut("range_of_teeth", "range of teeth that differ", band.attrs, scope, results, "teeth_band")
+
+
+def of_assumed_teeth(results: Results) -> Fact | None:
+    """Fact on the transmission error over all teeth, drawn of an assumed class. None: none are drawn."""
+    teeth = results.assumed_teeth
+    if teeth is None:
+        return None
+    middle = revolution_range(teeth)[1] if has_range(teeth) else math.nan
+    words = drawn_teeth(teeth)
+    scope = _scope(results, motion=Motion.UNILATERAL.text, teeth=words.partition(" with teeth ")[2],
+                   inputs=f"{teeth.attrs['inputs']}, {teeth.attrs['samples']} samples")  # fmt: skip
+    widens = results.spread("dynamic_factor") is not None
+    claim = assumed_teeth_words(teeth, results.effort.drawn_seconds, widens=widens)
+    return Fact("assumed_teeth", claim, middle, "m", scope, "assumed_teeth")
+
+
+def drawn_teeth(teeth: xr.Dataset) -> str:
+    """Return the machines in words: "8 machines with teeth drawn of class 6, assumed"."""
+    counts = teeth.attrs
+    machines = f"{counts['samples']} of {counts['asked']}"
+    if counts["samples"] == counts["asked"]:
+        machines = str(counts["samples"])
+    return f"{machines} machines with teeth drawn of class {counts['tolerance_class']}, assumed"
+
+
+def assumed_teeth_words(teeth: xr.Dataset, seconds: float, *, widens: bool) -> str:
+    """Return a clause on machines with teeth drawn of an assumed class.
+
+    ``seconds``: their time limit [s]. ``widens``: whether page 1 has ranges that they widen.
+    """
+    counts = teeth.attrs
+    machines = drawn_teeth(teeth)
+    refused = counts["taken"] - counts["samples"]
+    if has_range(teeth):
+        low, _, high = revolution_range(teeth)
+        parts = [f"{machines}, have a transmission error of {span(low, high, 'm', 2)} over all teeth"]
+        if widens:
+            parts[0] += ", and widen the ranges of dynamic factor, tooth load and bearing force"
+    else:
+        parts = [f"there is no range of teeth: it needs {LEAST_MACHINES} machines, and there are {machines}"]
+    parts += [f"{refused} without a motion left out"] if refused else []
+    lost = counts["contact_lost"]
+    parts += [f"{lost} of {counts['samples']} lose contact"] if lost else []
+    if counts["taken"] < counts["asked"]:
+        parts += [f"the time of {number(seconds, 3)} s was used up"]
+    return "; ".join(parts)
 
 
 def _range_beside_a_record(results: Results) -> Fact | None:

@@ -10,8 +10,16 @@ import numpy as np
 
 from lumped.outcomes import Absent
 from validation.files.formatting import quantity, span
+from validation.prediction.assumed_teeth import has_range, revolution_range
 from validation.prediction.motion import QUANTITIES, Prediction
-from validation.reporting.facts import Fact, amplified_words, proof_words, rpm, spread_words
+from validation.reporting.facts import (
+    Fact,
+    amplified_words,
+    drawn_teeth,
+    proof_words,
+    rpm,
+    spread_words,
+)
 from validation.reporting.results import Results
 from validation.reporting.verdict import way_out
 
@@ -104,6 +112,7 @@ def numbers_of(results: Results, facts: Mapping[str, Fact]) -> tuple[Number, ...
     if prediction.contact_lost:  # the smallest mesh force takes the place of the bearing force
         rows["bearing_rms"] = _least_force_row(results, facts["contact"])
     numbers = [*rows.values()]
+    numbers[1:1] = _revolution_row(results, facts.get("assumed_teeth"))
     numbers += [_resonance_row(results, facts["resonance"]), _hazard_row(results, facts["jumps"])]
     trouble = facts.get("trouble")
     if trouble is not None and trouble.value > 0.0:
@@ -112,6 +121,17 @@ def numbers_of(results: Results, facts: Mapping[str, Fact]) -> tuple[Number, ...
         scope = trouble.scope.words
         numbers.append(Number("trouble", label, trouble.value, "%", note=note, scope=scope))
     return tuple(numbers)
+
+
+def _revolution_row(results: Results, fact: Fact | None) -> list[Number]:
+    """Transmission error over all teeth of an assumed class. Empty: no range. ``fact``: on these teeth."""
+    teeth = results.assumed_teeth
+    if teeth is None or fact is None or not has_range(teeth):
+        return []
+    low, middle, high = revolution_range(teeth)
+    label = f"Transmission error over all teeth, class {teeth.attrs['tolerance_class']} assumed"
+    note = f"{drawn_teeth(teeth)}; {teeth.attrs['period']} mesh cycles; the result is the median"
+    return [Number("assumed_teeth", label, middle, "m", low, high, note=note, scope=fact.scope.words)]
 
 
 def _least_force_row(results: Results, fact: Fact) -> Number:

@@ -19,6 +19,11 @@ from validation.reporting.verdict import Verdict, verdict_of
 _NOT_MODELLED = "Not modelled: helix; misalignment; housing and sound radiation."
 #: Sentence before ``_NOT_MODELLED`` for like teeth, and for unlike teeth.
 _ALIKE = "The teeth are perfect: the parameter file states no tooth errors, so there are no sidebands."
+#: The same for like teeth, where teeth of an assumed class are drawn.
+_ASSUMED = (
+    "The parameter file states no tooth errors: the results are those of perfect teeth, without sidebands. "
+    "Only the row over all teeth and the ranges of forces have teeth of an assumed class."
+)
 _OWN = (
     "The numbers are those of the teeth with their errors. Of perfect teeth are the second program, the "
     "curves over speed, stability, and every range but that of the transmission error."
@@ -54,6 +59,11 @@ class PageOne:
     warnings: tuple[str, ...]
     facts: tuple[Fact, ...]
 
+    @property
+    def ranged(self) -> bool:
+        """Whether any row has a range."""
+        return any(row.range for row in self.numbers)
+
 
 def page_one(results: Results) -> PageOne:
     """Return the contents of the first page."""
@@ -68,10 +78,17 @@ def page_one(results: Results) -> PageOne:
         actions=actions_of(results, verdict),
         sure=_how_sure(results, facts),
         remark=_remark(results),
-        not_modelled=f"{_ALIKE if results.teeth is None else _OWN} {_NOT_MODELLED}",
+        not_modelled=f"{_teeth(results)} {_NOT_MODELLED}",
         warnings=results.warnings,
         facts=tuple(facts.values()),
     )
+
+
+def _teeth(results: Results) -> str:
+    """Sentence on the teeth to which the results belong."""
+    if results.teeth is not None:
+        return _OWN
+    return _ALIKE if results.assumed_teeth is None else _ASSUMED
 
 
 def title(results: Results) -> str:

@@ -34,6 +34,7 @@ from validation.check.record.channel import Record
 from validation.check.record.compare import compare_record
 from validation.check.record.comparison import RecordComparison
 from validation.cross_check.comparison import CrossCheck, crosscheck
+from validation.prediction.assumed_teeth import WIDENED, assumed_teeth, widened
 from validation.prediction.budget import error_budget
 from validation.prediction.inputs import given_and_assumed, uncertain_inputs
 from validation.prediction.motion import (
@@ -304,6 +305,21 @@ class Results:
         return teeth_band(self.given, self.uncertainty, self.effort.band_seconds)
 
     @computed_once
+    def assumed_teeth(self) -> xr.Dataset | None:
+        """Machines with teeth drawn of an assumed class, where the file states no tooth errors.
+
+        None: the file states tooth errors, every input is known, the report draws no teeth, or like teeth
+        lose contact, so that no ratio to them says what the errors do.
+        """
+        machines = self.effort.drawn_machines
+        if self.teeth is not None or not machines or not self.varies or self.like.contact_lost:
+            return None
+        samples = self.uncertainty
+        self.stage("teeth of an assumed class")
+        varied_inputs = None if isinstance(samples, Absent) else samples
+        return assumed_teeth(self.pair, varied_inputs, machines, self.effort.drawn_seconds)
+
+    @computed_once
     def record_samples(self) -> Varied | None:
         """Motions at samples of the inputs. None: there is no record, or the inputs are not varied."""
         samples = self.uncertainty
@@ -529,7 +545,10 @@ class Results:
         return f"{like}{self.in_place_of_shafts}"
 
     def spread(self, name: str) -> tuple[float, float] | None:
-        """5 % and 95 % of a number of page 1, relative to the result. None: there are too few samples."""
+        """5 % and 95 % of a number of page 1, relative to the result. None: there are too few samples.
+
+        For like teeth the ranges of forces have the teeth of an assumed class.
+        """
         samples = self.uncertainty
         if self.teeth is not None:
             if name != "dte_peak_to_peak" or self.teeth_band is None:
@@ -539,6 +558,8 @@ class Results:
             return None
         else:
             low, _, high = samples[f"{name}_percentile"].to_numpy().tolist()
+            if name in WIDENED and self.assumed_teeth is not None:
+                low, high = widened(samples, self.assumed_teeth, name)
         result = self.prediction.numbers[name]
         return (low / result - 1.0, high / result - 1.0) if result and math.isfinite(low) else None
 

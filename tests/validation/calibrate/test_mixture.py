@@ -8,7 +8,7 @@ from scipy.stats import multivariate_normal
 from validation.calibrate.discrepancy import LEVELS, prior_of_levels
 from validation.calibrate.fit import Minimum, Motions
 from validation.calibrate.forms import Form
-from validation.calibrate.mixture import component, draws, mixture, moments, pareto_shape
+from validation.calibrate.mixture import by_levels, component, draws, mixture, moments, pareto_shape
 
 FORM = Form((), 1.0)
 RNG = np.random.default_rng(5)
@@ -86,3 +86,22 @@ def test_the_shape_of_the_tail_tells_reliable_weights(tail, heavy):
     # Weights u^-k have a Pareto tail of the shape k.
     weights = (np.arange(1, 257) / 257.0) ** -tail
     assert (pareto_shape(np.log(weights)) > 0.7) is heavy
+
+
+def test_levels_have_their_prior_where_the_data_fit():
+    # Data that fit at every level: a good fit is no proof that the model is exact.
+    small = _component(DATA - SLOPES @ np.array([0.1, 0.0, -0.1]), level=0.0)
+    large = _component(DATA - SLOPES @ np.array([0.1, 0.0, -0.1]), level=0.1, covariance=100.0 * NOISE)
+    found = mixture(by_levels([small, large], {0.0: 0.25, 0.1: 0.75}, 6))
+    weights = {one.level: one.weight for one in found}
+    assert weights[0.1] == pytest.approx(0.75, abs=0.01)
+
+
+def test_a_level_at_which_the_data_do_not_fit_is_left_out():
+    small = _component(DATA + 10.0, level=0.0)
+    large = _component(DATA + 10.0, level=0.1, covariance=1e4 * NOISE)
+    found = mixture(by_levels([small, large], {0.0: 0.75, 0.1: 0.25}, 6))
+    assert [one.level for one in found] == [0.1]
+    # Also where the misfit is so large that its probability is no float.
+    far = _component(DATA + 1e4, level=0.0)
+    assert np.isfinite(by_levels([far], {0.0: 1.0}, 6)[0].weight)

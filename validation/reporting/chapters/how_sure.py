@@ -14,7 +14,7 @@ from validation.plots.prediction import budget_figure
 from validation.prediction.motion import QUANTITIES
 from validation.reporting.blocks import Block, Column, Content, Picture, Quantity, Table, Text, table_of
 from validation.reporting.chapter import Chapter
-from validation.reporting.facts import samples_words
+from validation.reporting.facts import of_assumed_teeth, samples_words
 from validation.reporting.results import Results
 
 
@@ -46,6 +46,9 @@ def write(results: Results) -> Content:
             f"{samples_words(samples)}. Contact is lost in {lost} of them, {unstable} are unstable.{why}"
         )
     )
+    drawn = of_assumed_teeth(results)
+    if drawn is not None:
+        blocks.append(Text(f"On page 1: {drawn.claim}. The table of results above has perfect teeth."))
     low, high = samples["dte_peak_to_peak_percentile"].to_numpy()[[0, -1]]
     if not math.isfinite(low):
         words = samples_words(samples)
