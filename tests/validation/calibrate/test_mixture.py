@@ -17,11 +17,11 @@ DATA = RNG.standard_normal(6)
 NOISE = 0.4 * np.eye(6) + 0.1
 
 
-def _component(offset, level=0.0, prior=1.0, covariance=NOISE, at=None):
-    """Component about a point: data = offset + SLOPES z, with a shift that changes nothing."""
+def _component(offset, level=0.0, prior=1.0, covariance=NOISE, at=None, slopes=SLOPES):
+    """Component about a point: data = offset + slopes z."""
     z = np.zeros(3) if at is None else at
-    motions = Motions(offset + SLOPES @ z, np.zeros((6, 0)))
-    minimum = Minimum(z, motions, SLOPES, 0.0)
+    motions = Motions(offset + slopes @ z, np.zeros((6, 0)))
+    minimum = Minimum(z, motions, slopes, 0.0)
     return component(FORM, minimum, level, prior, cholesky(covariance, lower=True), DATA)
 
 
@@ -42,15 +42,16 @@ def test_the_mean_does_not_depend_on_the_point_where_the_slopes_were_taken():
 
 
 def test_weights_are_the_evidence_of_two_forms():
-    # The data of a form are normal with the covariance NOISE + SLOPES SLOPES^T about its offset.
+    # The data of a form are normal with the covariance NOISE + slopes slopes^T about its offset.
     offsets = [np.zeros(6), np.full(6, 0.5)]
     priors = [0.7, 0.3]
-    covariance = NOISE + SLOPES @ SLOPES.T
+    slopes = [SLOPES, 2.0 * SLOPES]
+    forms = list(zip(offsets, priors, slopes, strict=True))
     evidence = [
-        prior * multivariate_normal(offset, covariance).pdf(DATA)
-        for offset, prior in zip(offsets, priors, strict=True)
+        prior * multivariate_normal(offset, NOISE + of_form @ of_form.T).pdf(DATA)
+        for offset, prior, of_form in forms
     ]
-    found = mixture([_component(o, prior=p) for o, p in zip(offsets, priors, strict=True)])
+    found = mixture([_component(o, prior=p, slopes=one) for o, p, one in forms])
     by_size = sorted(np.array(evidence) / sum(evidence), reverse=True)
     assert [one.weight for one in found] == pytest.approx(by_size, rel=1e-9)
 
