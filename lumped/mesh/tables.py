@@ -45,6 +45,8 @@ TURNING = record(
     cycles="mesh cycles of a turn",
     swing="way of the common rotation on the base circles per amplitude",
 )
+#: A step of the tables that is shorter than this share of another step has nothing to say of its places.
+_SHORT_STEP = 0.25
 #: Rows of TURNING: the eccentricity of both gears, then the ripples of the torques from RIPPLES on.
 PINION, GEAR, RIPPLES = range(3)
 
@@ -228,11 +230,24 @@ def turn_line(
 
 
 @inlined
+def step_at(edges: FloatArray, phase: float, near: int) -> int:
+    """Return the step of a phase, searched from the step ``near`` on; the first or last step beyond them."""
+    step = near
+    while step < edges.size - 2 and phase >= edges[step + 1]:
+        step += 1
+    while step > 0 and phase < edges[step]:
+        step -= 1
+    return step
+
+
+@inlined
 def nearest_node(step: int, node: int, swing: float, tables: MeshTables) -> TableNode:
     """Return the node of the tables next to a node that swings by a way over xi [m].
 
     The step is the one to which the middle of the own step swings: all nodes of a step see a law from the
-    same side of its jumps, and a swing that vanishes changes nothing.
+    same side of its jumps, and a swing that vanishes changes nothing. If that step is much shorter than the
+    own step, its slopes say nothing of the places of the other nodes (law II has steps of a millionth of the
+    mesh cycle beside the pitch point, with slopes of 1/x): then each node goes to the step at its own phase.
     """
     edges = tables.edges
     nodes = tables.nodes
@@ -240,13 +255,10 @@ def nearest_node(step: int, node: int, swing: float, tables: MeshTables) -> Tabl
     length = edges[step + 1] - edges[step]
     middle = edges[step] + 0.5 * length + swing / pitch
     pitches = math.floor(middle)
-    middle -= pitches
-    table_step = step
-    while table_step < edges.size - 2 and middle >= edges[table_step + 1]:
-        table_step += 1
-    while middle < edges[table_step]:
-        table_step -= 1
+    table_step = step_at(edges, middle - pitches, step)
     phase = edges[step] + nodes[node] * length + swing / pitch - pitches
+    if edges[table_step + 1] - edges[table_step] < _SHORT_STEP * length:
+        table_step = step_at(edges, phase, table_step)
     nearest = 0
     least = math.inf
     for other in range(nodes.size):

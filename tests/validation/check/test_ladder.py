@@ -178,6 +178,19 @@ def test_tooth_pairs_count_as_one_channel(pair):
     assert np.linalg.norm(residual_of(problem.misfit)) == pytest.approx(problem.misfit.value, rel=0.02)
 
 
+def test_tooth_pairs_that_are_not_compared_do_not_stop_the_search(pair, motions):
+    """Of the loads of four tooth pairs one channel is compared; a family of channels has all four."""
+    other = lumped_motion(pair.with_({"mesh.stiffness_factor": 1.3}))
+    curves = sampled(other, ("dte",))
+    places = np.arange(curves.places.size) * (curves.places[1] - curves.places[0])
+    loads = (
+        Channel(f"normal_load_{one}", "normal_load", other.at("normal_load", places, one), one)
+        for one in "ABCD"
+    )
+    curves = replace(curves, channels=(*curves.channels, *loads))
+    assert names(ladder_of(pair, curves, motions))[0] == "mesh stiffness"
+
+
 def test_altered_models_agree_with_the_prediction(pair):
     """Prescribed contact in which all teeth push: the linear motion is the motion with unilateral contact."""
     alteration = motion_of(pair, Physics(), None).samples("dte")

@@ -124,7 +124,10 @@ def _units(problem: Problem, variant: Variant) -> list[Choice]:
 
     choices = []
     kinds = {channel.name: channel.kind.unit for channel in problem.curves.channels}
-    for words, names in _groups(problem).items():
+    for words, group in _groups(problem).items():
+        names = tuple(name for name in group if name in ratios)
+        if not names:  # no channel of the group is compared
+            continue
         distance = max(abs(math.log(ratios[name])) for name in names)
         for unit in UNIT_FACTORS:
             if unit.units and not all(kinds[name].startswith(unit.units) for name in names):
