@@ -27,8 +27,8 @@ from validation.interactive import write_interactive_page
 from validation.interactive.results import Sampling
 
 #: Commands that take longer than a few seconds or need a cluster: only their arguments are checked. That
-#: reports are written and compared is tested in tests/validation.
-NOT_RUN = re.compile(r"spurcheck ((report|figures|interactive) |sweep .*--cluster)")
+#: reports are written and compared, and that records calibrate a pair, is tested in tests/validation.
+NOT_RUN = re.compile(r"spurcheck ((report|figures|interactive|calibrate) |sweep .*--cluster)")
 #: What makes a stability chart small: tests/validation/commands judges the numbers, here the words matter.
 SMALL = {"speed_rpm": "speed_rpm=16000:19000:9", "damping_ratio": "damping_ratio=0:0.02:5"}
 AXES_OF_VIEW = {"chart": SMALL, "campbell": ["speed_rpm"], "boundaries": ["speed_rpm"]}

@@ -57,6 +57,7 @@ ROSS = (
 def _law(**values: float) -> Record:
     """Parameters of the multibody model's friction laws by the names of their fields."""
     friction = np.zeros(1, FRICTION)[0]
+    friction["factor"] = 1.0  # no factor of the user
     for name, value in values.items():
         friction[name] = value
     return friction

@@ -60,7 +60,7 @@ def _of(*, half: float = 0.01, **changed: Any) -> Verdict:
     calm = {
         "outside": (), "nearest_hazard": None, "operating_rpm": _RPM, "contact_lost": False,
         "teeth_apart": 0, "inputs": (9, 0), "varies": True, "measured_error": None,
-        "prediction": SimpleNamespace(contact_lost=False, stable=True, reason=""),
+        "prediction": SimpleNamespace(contact_lost=False, stable=True, roams=False, reason=""),
         "spread": lambda name: (-0.6 * half, half) if name == "dte_peak_to_peak" else (-half, 0.5 * half),
         "resonance": None, "on_springs": "", "other_motions": (), "searched": (200.0, 4000.0),
         "jump_search": SimpleNamespace(jumps=(), attractors=()),

@@ -156,7 +156,7 @@ REFUSED_COMMANDS = {
     "stability": ["--tongues"],
 }
 #: Commands whose function is in the tables above, and is called with the option.
-BY_FUNCTION = {"check", "compare", "report", "teeth", "uncertainty"}
+BY_FUNCTION = {"calibrate", "check", "compare", "report", "teeth", "uncertainty"}
 #: Commands in which supports do not enter, or are in the file.
 WITHOUT_COMMANDS = {"floquet", "init", "presets", "reference", "sweep"}
 

@@ -24,7 +24,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from lumped.errors import SpurcheckError
+from lumped.errors import SpurcheckError, typed_errors
 from lumped.model.revolution_motion import Origin
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
@@ -62,7 +62,7 @@ _PROMISING = 30
 _INTERVALS = 2
 #: Free parameters that are searched by Brent's method where Gauss-Newton steps leave a misfit above this,
 #: and trials of each search.
-_SEARCHED = 2
+_SEARCHED = 4
 _STALLED = 0.02
 _TRIALS = 14
 #: Free parameters nearer to neutral than this change nothing that is worth a sentence.
@@ -259,7 +259,7 @@ class Search:
                 raise BudgetSpentError
             self.runs += 1
             try:
-                with warnings.catch_warnings():
+                with warnings.catch_warnings(), typed_errors():
                     warnings.simplefilter("ignore")
                     again = self.problem.curves.recurrence
                     self.motions[key] = motion_of(pair, physics, again, settles=self._settles)

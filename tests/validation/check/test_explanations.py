@@ -370,7 +370,7 @@ def rivals(name, problem, whole=False):
     return [*causes, *causes_of_channels(problem)] if of_channels else causes
 
 
-def climbed(problem, shared, pair_name, name, most_motions=300, whole=False):
+def climbed(problem, shared, pair_name, name, most_motions=1200, whole=False):
     """The ladder of a problem beside the rivals of a cause, with the motions of its pair."""
     return climb(
         problem,
@@ -451,7 +451,7 @@ def test_fixed_value(name, pairs, shared):
     if name == "static curve":  # a curve over the times of the pair
         curves = replace(curves, places=sampled(motion, channels).places)
     problem = Problem.of(pair, curves, motion)
-    most = 12 if pair_name in ("eccentric", "on shafts", "contact lost") else 300
+    most = 60 if pair_name in ("eccentric", "on shafts", "contact lost") else 300
     assert says(climbed(problem, shared, pair_name, name, most, name in WHOLE), name)
 
 
