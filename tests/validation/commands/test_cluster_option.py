@@ -5,7 +5,6 @@ import pytest
 from lumped import load_gear_pair
 from tests.unlike_pairs import unlike_pair
 from validation.exchange import read_netcdf
-from validation.studies import open_cluster
 
 from .conftest import refused, run
 
@@ -18,14 +17,6 @@ def files(tmp_path_factory):
         (folder / f"{name}.toml").write_text(unlike_pair(name).to_toml())
     (folder / "preset.toml").write_text(load_gear_pair("nasa_28_28").to_toml())
     return folder
-
-
-@pytest.fixture(scope="module")
-def scheduler():
-    """Address of a scheduler with two workers, which all commands share."""
-    pytest.importorskip("distributed", reason="needs distributed (extra: cluster)")
-    with open_cluster("local:2") as cluster:
-        yield cluster._client.scheduler.address
 
 
 COMMANDS = {
@@ -43,17 +34,13 @@ COMMANDS = {
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", COMMANDS)
-def test_a_cluster_writes_the_bytes_of_this_process(files, scheduler, tmp_path, name):
-    """The pair of the range loses contact; the chart has a fit at each torque."""
+def test_a_cluster_writes_the_bytes_of_this_process(files, tmp_path, name):
     command, pair, *rest = COMMANDS[name]
     here = run(command, files / pair, *rest, "-o", tmp_path / "here.nc")
-    there = run(command, files / pair, *rest, "-o", tmp_path / "there.nc", "--cluster", scheduler)
-    assert there.exit_code == 0, there.stderr
+    there = run(command, files / pair, *rest, "-o", tmp_path / "there.nc", "--cluster", "local:2")
     assert (there.exit_code, there.stdout) == (here.exit_code, here.stdout.replace("here.nc", "there.nc"))
     assert (tmp_path / "there.nc").read_bytes() == (tmp_path / "here.nc").read_bytes()
-    found = read_netcdf(tmp_path / "there.nc")
-    assert found.data_vars
-    assert name != "uncertainty" or found.attrs["contact_lost"] > 0
+    assert read_netcdf(tmp_path / "there.nc").data_vars
 
 
 @pytest.mark.parametrize(

@@ -63,7 +63,8 @@ class Dask:
         self.scheduler = self._start(
             "dask_scheduler", "--host", "127.0.0.1", "--port", "0", "--scheduler-file", str(file)
         )
-        wait_until(file.exists, "the scheduler does not start")
+        # The file is there before its text is.
+        wait_until(lambda: file.exists() and file.read_text().endswith("}"), "the scheduler does not start")
         self.address = json.loads(file.read_text())["address"]
 
     def _start(self, program, *arguments, **environment):
