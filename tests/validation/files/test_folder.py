@@ -350,9 +350,14 @@ for out in sys.argv[1:]:
 def test_a_result_that_does_not_fit_is_told_and_leaves_nothing(tmp_path):
     # HDF5 alone ends the process with a segmentation fault here.
     outs = [str(tmp_path / f"run.{suffix}") for suffix in ("nc", "csv", "mat", "png")]
-    # Without compiling: its cache could not be written either. Nor may Python keep byte code: its writer takes a file that
-    # was cut at the limit for a whole one, and the truncated module stays for every later process.
-    environment = {**os.environ, "NUMBA_DISABLE_JIT": "1", "MPLBACKEND": "Agg", "PYTHONDONTWRITEBYTECODE": "1"}
+    # Without compiling: its cache could not be written either. Nor may Python keep byte code: it takes a
+    # module that was cut at the limit for a whole one, and every later process fails on it.
+    environment = {
+        **os.environ,
+        "NUMBA_DISABLE_JIT": "1",
+        "PYTHONDONTWRITEBYTECODE": "1",
+        "MPLBACKEND": "Agg",
+    }
     command = [sys.executable, "-c", RUNS, *outs]
     run = subprocess.run(command, preexec_fn=limited, capture_output=True, text=True, env=environment)
     assert run.returncode == 0, run.stderr
