@@ -38,8 +38,10 @@ Compliance = Literal[
     "no compression",
     "no foundation",
     "no contact",
+    "a quarter of the contact",
     "half the contact",
     "twice the contact",
+    "four times the contact",
     "the pinion's tooth alone",
     "the gear's tooth alone",
     "two teeth of the pinion",
@@ -66,6 +68,12 @@ COMPLIANCES: Mapping[Compliance, _Factors] = MappingProxyType(
             {"foundation": 0.0}, "the gear bodies, the fillet foundation, left out of the compliance"
         ),
         "no contact": _Factors({"hertz": 0.0}, "the Hertzian contact left out of the compliance"),
+        "a quarter of the contact": _Factors(
+            {"hertz": 0.25}, "a quarter of the compliance of the Hertzian contact"
+        ),
+        "four times the contact": _Factors(
+            {"hertz": 4.0}, "four times the compliance of the Hertzian contact"
+        ),
         "half the contact": _Factors({"hertz": 0.5}, "half of the compliance of the Hertzian contact"),
         "twice the contact": _Factors({"hertz": 2.0}, "twice the compliance of the Hertzian contact"),
         "the pinion's tooth alone": _Factors({"gear": 0.0}, "the compliance of the pinion's tooth alone"),

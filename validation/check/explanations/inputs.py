@@ -34,9 +34,9 @@ from validation.check.problem import Problem
 
 #: Trial factors of a stiffness or a load.
 _LOAD = (0.15, *NEAR, 6.0)
-#: Trial friction coefficients, and one between them from which the search counts: no usual one.
-_COEFFICIENTS = (0.015, 0.03, 0.06, 0.12)
-_UNUSUAL_COEFFICIENT = 0.04269
+#: Trial friction coefficients, and one below them from which the search counts.
+_COEFFICIENTS = (0.012, 0.03, 0.06, 0.12)
+_LEAST_COEFFICIENT = 0.004
 #: Trial steps of an integrator, and steps of 1 in a mesh cycle.
 _STEPS = (-2.0, -0.5, 0.5, 2.0, 6.0)
 _STEPS_PER_CYCLE = 500.0
@@ -365,7 +365,7 @@ def _free() -> Iterator[Cause]:
         meaning="one friction coefficient everywhere, in place of that of a law",
         span=f"coefficient, about {_COEFFICIENTS[0]:g} to {_COEFFICIENTS[-1]:g}",
         grid=_COEFFICIENTS,
-        neutral=_UNUSUAL_COEFFICIENT,
+        neutral=_LEAST_COEFFICIENT,
         change=_constant_friction,
         words="the friction coefficient {value} everywhere, in place of that of a law",
         applies=lambda problem, variant: variant.pair.friction.law not in ("none", "coulomb"),

@@ -258,8 +258,8 @@ def _causes() -> Iterator[Cause]:
     )
     yield fixed(
         "parts of the compliance",
-        "a part of the compliance of the energy method left out, halved or doubled",
-        "bending, shear, compression, foundation, contact (0, 0.5, 2); one tooth",
+        "a part of the compliance of the energy method left out, or times a factor",
+        "bending, shear, compression, foundation, contact (0, 0.25, 0.5, 2, 4); one tooth",
         _parts,
     )
     yield fixed(
