@@ -332,6 +332,7 @@ SINGLE = (
     "sign of the deviations",
     "reading of the deviations",
     "places of tooth pairs",
+    "few digits",  # test_digits.py
 )
 
 
