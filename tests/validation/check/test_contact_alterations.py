@@ -64,8 +64,11 @@ def total(pair, law, xi):
     return sum(law(xi + number * pair.geometry.base_pitch) for number in range(-3, 4))
 
 
-def balances(pair, motion, rel=2e-3):
-    """T_p = mean(r_bp N + X_p F): over a mesh cycle inertia averages out."""
+def balances(pair, motion, rel=4e-3):
+    """T_p = mean(r_bp N + X_p F): over a mesh cycle inertia averages out.
+
+    Forces jump with a pair that comes or goes: a sum over 256 samples errs by up to a jump over 256.
+    """
     load, friction = (motion[key].to_numpy() for key in ("normal_load", "friction_force"))
     moments = pair.geometry.base_radius_pinion * load + motion["position"].to_numpy() * friction
     assert moments.sum(axis=0).mean() == pytest.approx(pair.operating.pinion_torque, rel=rel)
@@ -76,7 +79,7 @@ def test_the_kernel_of_contact_forces_has_the_motion_of_the_model(pair):
     own = lumped_motion(pair).motion
     other = motion_of(pair, Physics(contact="no rate of the errors"), None).motion
     for name in ("dte", "theta_g", "x_p", "y_g", "bearing_force_x_p"):
-        difference = own[name].to_numpy() - other[name].to_numpy()
+        difference = own[name].to_numpy()[::2] - other[name].to_numpy()  # 512 and 256 samples
         difference -= difference.mean() if name.startswith("theta") else 0.0
         assert np.abs(difference).max() < 2e-3 * np.ptp(own[name].to_numpy()), name
 
@@ -85,9 +88,8 @@ def test_the_kernel_finds_the_motion_that_loses_contact(lost):
     own = lumped_motion(lost).motion
     other = motion_of(lost, Physics(contact="no rate of the errors"), None).motion
     assert own["normal_load"].to_numpy().sum(axis=0).min() == 0.0
-    assert np.abs(own["dte"].to_numpy() - other["dte"].to_numpy()).max() < 0.02 * np.ptp(
-        own["dte"].to_numpy()
-    )
+    true = own["dte"].to_numpy()[::2]  # 512 and 256 samples
+    assert np.abs(true - other["dte"].to_numpy()).max() < 0.02 * np.ptp(true)
 
 
 @pytest.mark.parametrize(
