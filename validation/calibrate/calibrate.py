@@ -30,6 +30,7 @@ from validation.calibrate.discrepancy import (
     discrepancy_covariance,
     noise_covariance,
     prior_of_levels,
+    shown_results,
 )
 from validation.calibrate.fit import STARTS, Fit, Minimum, starts
 from validation.calibrate.forms import Form, forms_of, machine, numeric_inputs, pair_of
@@ -344,6 +345,7 @@ def _machines(
         z=z[kept][order],
         components=[components[places[kept[j]]] for j in order],
         numbers=[numbers[j] for j in order],
+        shown=shown_results(data),
         shape=shape,
         seed=seed,
     )

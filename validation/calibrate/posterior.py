@@ -60,6 +60,7 @@ class Machines:
     z : (machine, input) normal scores
     components : component of the mixture from which each machine was drawn
     numbers : page-1 numbers of each machine, without the error of the model
+    shown : results of page 1 that the records show
     shape : shape of the tail of the importance weights; above 0.7 the machines are those of the linear data
     seed : seed of the draws
     """
@@ -67,6 +68,7 @@ class Machines:
     z: FloatArray
     components: Sequence[Component]
     numbers: Sequence[dict[str, float]]
+    shown: frozenset[str]
     shape: float
     seed: int
 
@@ -82,7 +84,7 @@ class Machines:
         errors = {}
         for name in ERRORS:
             prior = DEVIATION * np.abs(random.standard_normal(levels.size))
-            size = levels if name == "dte_peak_to_peak" else np.maximum(levels, prior)
+            size = levels if name in self.shown else np.maximum(levels, prior)
             errors[name] = size * random.standard_normal(levels.size)
             errors[name][0] = 0.0
         return errors
