@@ -34,9 +34,10 @@ from validation.calibrate.discrepancy import (
 )
 from validation.calibrate.fit import STARTS, Fit, Minimum, starts
 from validation.calibrate.forms import Form, forms_of, machine, numeric_inputs, pair_of
+from validation.calibrate.machines import Machines
 from validation.calibrate.measured import Measured, measured_records
 from validation.calibrate.mixture import Component, by_levels, component, draws, mixture, pareto_shape
-from validation.calibrate.posterior import RELIABLE, Machines, Posterior
+from validation.calibrate.posterior import RELIABLE, Posterior
 from validation.prediction.motion import predicted
 from validation.prediction.uncertain_input import Input
 

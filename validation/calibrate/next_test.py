@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 import numpy as np
 from scipy.linalg import block_diag, cholesky
@@ -30,6 +30,7 @@ from validation.calibrate.discrepancy import (
 )
 from validation.calibrate.fit import SAMPLES, Fit, Minimum, Motions, at_record
 from validation.calibrate.forms import Form, beside, level_score, machine, pair_of
+from validation.calibrate.machines import Machines
 from validation.calibrate.measured import ORDERS, Measured, MeasuredChannel
 from validation.calibrate.mixture import Component, by_levels, component, mixture
 from validation.check.curves import Channel
@@ -37,9 +38,6 @@ from validation.check.record.compare import mean_motion
 from validation.prediction.motion import predicted
 from validation.prediction.uncertain_input import Input
 from validation.signals.complex_orders import ComplexOrders
-
-if TYPE_CHECKING:
-    from validation.calibrate.posterior import Machines
 
 #: Results whose width counts.
 RESULTS = ("dte_peak_to_peak", "dynamic_factor", "bearing_rms")
