@@ -214,7 +214,7 @@ def classes(first: int, last: int) -> None:
     """
     names = (REVOLUTION, *WIDENED)
     print("\nTrue machine of class 6 and its place: 0 is 5 %, 1 is 95 % of the range of page 1\n")
-    line("pair", "machines", *names, *(f"{name}, perfect teeth" for name in WIDENED))
+    line("pair", "machines of those taken", *names, *(f"{name}, perfect teeth" for name in WIDENED))
     inside = np.zeros((len(names) + len(WIDENED), 2), dtype=int)
     for number, pair in enumerate(drawn_pairs()):
         if not first <= number < last:
@@ -233,7 +233,11 @@ def classes(first: int, last: int) -> None:
             (true[name] - low) / (high - low)
             for name, (low, high) in zip((*names, *WIDENED), ends, strict=True)
         ]
-        line(pair.name, f"{teeth.attrs['samples']} of {MACHINES}", *(f"{place:.2f}" for place in places))
+        line(
+            pair.name,
+            f"{teeth.attrs['samples']} of {teeth.attrs['taken']}",
+            *(f"{place:.2f}" for place in places),
+        )
         known = np.isfinite(places)
         inside += np.column_stack([known & (np.abs(np.array(places) - 0.5) <= 0.5), known])
     line("inside", "", *(f"{count} of {total}" for count, total in inside.tolist()))

@@ -1,7 +1,7 @@
 """Floquet theory for any linear system with periodic coefficients, and its application to the gear pair.
 
 Names are imported on first use; ``__init__.pyi`` lists them with their homes.
-``floquet/engine/proven.py`` says what is proven, and which function proves it.
+``floquet/proven.py`` says what is proven, and which function proves it.
 """
 
 from lumped.public_names import public_names

@@ -1,6 +1,6 @@
 """Transition matrices with proven errors of systems whose A(t) is known as a formula, many systems at once.
 
-Which other bounds are proven, and where, is in ``floquet/engine/proven.py``.
+Which other bounds are proven, and where, is in ``floquet/proven.py``.
 
 Sources: docs/theory/proven_bounds.md, "The matrix of a step" and "The product".
 """

@@ -6,11 +6,12 @@ import unicodedata
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Annotated, Any, Self
+from typing import TYPE_CHECKING, Annotated, Any, Self
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, GetCoreSchemaHandler
 from pydantic_core import core_schema
 
+from lumped.arguments import nearest
 from lumped.errors import refuse
 from lumped.fields.units import Quantity, to_file
 
@@ -26,6 +27,16 @@ class Section(BaseModel):
             action = "Parameters do not change. Make a variation: pair.with_(speed=2000)."
             raise refuse(name, value, "a value of pair.with_(...)", action)
         super().__setattr__(name, value)
+
+    if not TYPE_CHECKING:  # a checker knows the fields
+
+        def __getattr__(self, name: str) -> Any:
+            """Refuse a name that is no attribute, with the field that was probably meant."""
+            if name.startswith("_"):
+                return super().__getattr__(name)
+            fields = list(type(self).model_fields)
+            advice = nearest(name, fields) or f"It has {', '.join(fields)}."
+            raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}. {advice}")
 
     def __dir__(self) -> list[str]:
         """Return the names for users: fields, properties and methods of this program."""

@@ -10,8 +10,8 @@ computed where the motion is computed. All places use these definitions of a pow
 - bearings, shafts: z'^T D z', with the matrix D of the dampers of the supports
 - efficiency: 1 - (sum of all mean losses) / (T_p Omega_p)
 
-No loss is what rolling takes or gives along the path (``energy_residual``, ``rolling``), with the work of the
-forces at tip corners.
+Two powers are no losses: what rolling takes or gives along the path (``energy_residual``, ``rolling``), and
+the work of the forces at tip corners.
 
 Places that compute the losses:
 

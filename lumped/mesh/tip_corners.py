@@ -2,8 +2,9 @@
 
 Flanks end where the tip corner of one gear leaves the flank of the mate. An undercut mate has an edge there
 as well, which ends its own flank. Beyond the end both corners have a gap from the other gear's flank, and the
-larger of the two gaps is the gap of the pair. A corner pushes as soon as the approach of the gears exceeds
-this gap.
+larger of the two gaps is added to the gap that the errors of the teeth leave (``write_gap`` in
+``lumped/mesh/element.py``). A corner pushes where the approach of the gears exceeds the sum: the compression
+is positive then.
 
 Sources: docs/theory/contact_energy.md, "Tip corner".
 """

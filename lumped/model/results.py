@@ -141,6 +141,16 @@ def load_range(pair: GearPair, load: FloatArray, contact: FloatArray) -> tuple[f
     return float(load[touching].max()), float(pressing[where].min())
 
 
+def a_pair_pulls(pair: GearPair, motion: xr.Dataset) -> bool:
+    """Whether any tooth pair pulls in a motion, by more than ``LOAD_NOISE`` of the static load.
+
+    The form of contact does not count here: with prescribed contact all pairs together may press all the time
+    while one of them pulls. `needs_pull` asks for the form.
+    """
+    static_load = pair.operating.pinion_torque / pair.geometry.base_radius_pinion
+    return float(motion["normal_load"].min()) < -LOAD_NOISE * static_load
+
+
 def needs_pull(pair: GearPair, motion: xr.Dataset) -> bool:
     """Whether a motion of the linear model needs teeth that pull, by more than ``LOAD_NOISE``."""
     least = load_range(pair, *(motion[name].to_numpy() for name in ("normal_load", "contact")))[1]

@@ -12,7 +12,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from lumped.errors import refuse
 from lumped.fields.section import Section
-from lumped.fields.units import Quantity
+from lumped.fields.units import Quantity, to_file
 from lumped.lubrication.viscosity import (
     ZERO_CELSIUS,
     grade_viscosity,
@@ -165,7 +165,11 @@ class ViscosityLaw(Section):
         value = [v is not None for v in points]
         if not (all(value) if self.iso_vg is None else not any(value)):
             allowed = "iso_vg, or kinematic_viscosity_40 and kinematic_viscosity_100"
-            raise refuse("iso_vg", self.iso_vg, allowed, "Give one of the two descriptions.")
+            action = "Give one of the two descriptions"
+            if self.iso_vg is None and not any(value):
+                temperature = to_file(self.temperature, "degC")
+                action += f" with the temperature: {{'iso_vg': 220, 'temperature': {temperature:g}}}"
+            raise refuse("iso_vg", self.iso_vg, allowed, action + ".")
         if self.iso_vg is not None:
             midpoint(self.iso_vg)
         with np.errstate(over="ignore"):

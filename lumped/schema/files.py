@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import warnings
 from collections.abc import Iterator, Mapping
 from functools import cache
@@ -37,6 +38,8 @@ _NO_PAIRS = {
     **dict.fromkeys((".xlsx", ".xls", ".ods"), "Copy its values into a parameter file: 'spurcheck init'."),
 } | dict.fromkeys((".rexs", ".rexsj", ".rexsz"), "Make a parameter file of it: 'spurcheck init --from-rexs'.")
 
+#: Numbers of teeth, as ``new_pair`` takes them, where a file is asked for.
+_TEETH = re.compile(r"\s*\d+\s*/\s*\d+\s*")
 #: Alteration over module that changes no result anybody reads.
 _SMALL = 1e-3
 
@@ -115,6 +118,11 @@ def _from_file(source: str | Path) -> GearPair:
             raise refuse("file", path, "the parameters of a gear pair, a .toml file", _NO_PAIRS[suffix])
         instead = ", or a preset: " + ", ".join(preset_names())
         action = "Check the path, or start from 'spurcheck init'."
+        if _TEETH.fullmatch(str(source)):
+            action = (
+                "Teeth alone are no pair: spurcheck.new_pair("
+                f"{str(source)!r}, module=..., face_width=..., speed=..., torque=...) assumes the rest."
+            )
         text = read_text(path, MAX_FILE_BYTES, kind="TOML file", instead=instead, action=action)
         name = str(path)
         folder = path.parent

@@ -8,10 +8,13 @@ quantity (symbol)      name                                         made in
 =====================  ===========================================  =========================================
 tolerance class        ``pinion.deviations.tolerance_class``        parameter file, ``schema/teeth.py``
 index deviation (F)    ``index``, positive further along the count  ``drawn_index``, ``schema/tolerances.py``
-tooth error (e)        ``ToothErrors.error``, positive where late   ``tooth_errors``, this file
-the same, a record     ``TOOTH.gap``                                ``_of_teeth``, ``model/tooth_laws.py``
-gap of a pair          ``PAIR.gap``: laws, errors of both teeth     ``fill_pair``, ``mesh/tables.py``
-                       and eccentricity
+tooth error (e)        ``ToothErrors.error``, positive where late,  ``tooth_errors``, this file
+                       without the first harmonic
+first harmonic         ``ToothErrors.eccentricity``: the gear       ``tooth_errors``, this file
+                       turns about another axis
+the error, a record    ``TOOTH.gap``                                ``_of_teeth``, ``model/tooth_laws.py``
+gap of a pair          ``PAIR.gap``: laws and errors of both teeth  ``fill_pair``, ``mesh/tables.py``
+                       what eccentric gears add to it               ``fill_steps``, ``mesh/tables.py``
 compression            approach less gap; above 0 the pair touches  ``mesh/element.py``
 =====================  ===========================================  =========================================
 

@@ -13,6 +13,7 @@ LOOSE = {
     "lumped": {"arguments", "cache", "calls", "compiler", "compiler_flags", "errors", "gauss_legendre",
      "kernel_stamps", "labelling", "linked_code", "outcomes", "path_function", "path_values", "public_names",
      "ranges", "root_in_bracket", "typing"},
+    "floquet": {"proven"},
     "validation": {"stop_signals", "cli", "pytest_plugin"},
 }  # fmt: skip
 #: Folders of tests that belong to no single package.

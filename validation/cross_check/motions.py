@@ -17,7 +17,7 @@ import multibody
 from floquet.gear.motions import GearOrbit
 from lumped import GearPair
 from lumped.errors import NumericalError
-from lumped.model.results import LOAD_NOISE
+from lumped.model.results import a_pair_pulls
 from lumped.typing import FloatArray
 from validation.cross_check.agreement import COMPANION, Fidelity, is_constant
 from validation.cross_check.verdict import SAME_EQUATIONS
@@ -49,8 +49,7 @@ def unilateral_orbit(pair: GearPair) -> tuple[GearOrbit | None, str]:
     found, the second value says why a motion in which teeth pull is compared. Else the second value is empty.
     """
     motion = lumped.steady_state(pair, supports="springs", samples_per_cycle=512)
-    least = -LOAD_NOISE * pair.operating.pinion_torque / pair.geometry.base_radius_pinion
-    if float(motion["normal_load"].min()) >= least:
+    if not a_pair_pulls(pair, motion):
         return None, ""
     try:
         orbit = settled_orbit(pair)

@@ -5,9 +5,11 @@ class is assumed, as for K_v of ISO 6336-1: ``ASSUMED_TOLERANCE_CLASS``. Each ma
 gears and, where the inputs are varied, other inputs. Each machine is compared with its twin with perfect
 teeth: the ratio of both says what the teeth do, and the ratios widen the range of the inputs.
 
-Each motion is that of ``predict`` over the hunting period, as for the teeth of a file. The linear motion
-takes less time, but with the friction law of Benedict and Kelley it changes with the number of samples: the
-peak to peak of 19/41 with drawn teeth is 50, 97 and 201 um for 32, 64 and 256 samples, 50 um by ``predict``.
+Each motion is that of ``predict`` over the hunting period, as for the teeth of a file, but for steps that are
+``STEP_FACTOR`` times as long. They err by 1 % at most (docs/verification/uncertainty.md), while the machines
+differ by tens of per cent. The linear motion takes less time, too, but with the friction law of Benedict and
+Kelley it changes with the number of samples: the peak to peak of 19/41 with drawn teeth is 50, 97 and 201 um
+for 32, 64 and 256 samples, 50 um by ``predict``.
 
 Source: prediction interval of one further value, log-normal with unknown mean and variance; Hahn and Meeker,
 Statistical Intervals, 1991, section 4.7.
@@ -27,13 +29,15 @@ from lumped.model.dynamic_factor import ASSUMED_TOLERANCE_CLASS
 from lumped.schema.meeting_teeth import period_of
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
-from validation.prediction.motion import QUANTITIES, Motion, predicted
+from validation.prediction.motion import QUANTITIES, Motion, predicted, predicted_by_long_steps
 from validation.prediction.uncertainty import PERCENTILES, TEETH, each_sample
 
 #: Results whose range the ratios widen.
 WIDENED = ("dynamic_factor", "tooth_load", "bearing_rms")
 #: Least number of machines of a range. With three, Student's t makes the range twice as wide as with many.
 LEAST_MACHINES = 3
+#: Length of the steps of the motion with drawn teeth over that of ``predict``.
+STEP_FACTOR = 4
 #: Name of the transmission error over the period of the teeth.
 REVOLUTION = "revolution_dte_peak_to_peak"
 #: Number of equally probable ratios that the samples of the inputs are multiplied by.
@@ -94,9 +98,9 @@ def assumed_teeth(
 
 def _beside_twin(machine: GearPair) -> list[float]:
     """Transmission error over the period of the teeth, ratios to the twin, and whether contact is lost."""
-    drawn = predicted(machine)
+    drawn = predicted_by_long_steps(machine, STEP_FACTOR)
     twin = predicted(machine.healthy)
-    if Motion.LINEAR in (drawn.motion, twin.motion):
+    if twin.motion is Motion.LINEAR:
         raise NumericalError("The linear motion stands in, in which teeth may pull.")
     ratios = [
         drawn.numbers[name] / twin.numbers[name] if twin.numbers[name] > 0.0 else math.nan for name in WIDENED

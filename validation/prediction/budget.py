@@ -17,9 +17,10 @@ import xarray as xr
 from lumped.errors import SpurcheckError
 from lumped.labelling import labelled_dataset
 from lumped.model.periodic_system import without_shafts
+from lumped.model.results import a_pair_pulls
 from lumped.outcomes import Absent, Outcome
 from lumped.schema.pair import GearPair
-from validation.prediction.motion import Motion, Prediction, measured, predicted, pulls
+from validation.prediction.motion import Motion, Prediction, measured, predicted
 
 #: Errors of ``COLUMNS`` [m, 1, N].
 Sizes = tuple[float, float, float]
@@ -237,7 +238,7 @@ def _rows(results: BudgetResults) -> Iterator[Row]:
 
 def _linear_contact(pair: GearPair, linear: xr.Dataset | Absent) -> str:
     """Sentence on the difference between the contact of the linear motion and of the prediction."""
-    if isinstance(linear, Absent) or pulls(pair, linear):
+    if isinstance(linear, Absent) or a_pair_pulls(pair, linear):
         return "teeth pull in the linear motion"
     return "its contact and dampers are those of the mean load"
 

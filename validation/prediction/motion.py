@@ -13,7 +13,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from enum import Enum
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -22,12 +22,16 @@ import xarray as xr
 from lumped.display.progress import reported_to, shows_progress
 from lumped.display.result import DisplayedResult
 from lumped.errors import NumericalError, UnsettledError, typed_errors
-from lumped.model.periodic_system import Supports, with_supports
+from lumped.labelling import provenance
+from lumped.model.momentary_load import steps_of
+from lumped.model.periodic_system import LTVSystem, Supports, supports_of, with_supports
 from lumped.model.results import PlainMotion, peak_to_peak, plain
-from lumped.model.revolution_motion import Origin
+from lumped.model.revolution_motion import Origin, default_samples, plain_motion
 from lumped.model.steady import UNSTABLE
 from lumped.model.steady_state import periodic_motion
+from lumped.model.unilateral_motion import settled_motion
 from lumped.schema.files import AnyPair, load_gear_pair
+from lumped.schema.meeting_teeth import period_of
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray, Progress, ProgressRequest, unheard
 from validation.signals.complex_orders import orders_of_period
@@ -37,9 +41,6 @@ if TYPE_CHECKING:
 
 #: Samples in a mesh cycle of a pair with like teeth.
 _SAMPLES = 512
-#: A tooth pair pulls below this load over the mean mesh force: smaller loads are the rounding of light
-#: contact.
-_PULLS = -1e-6
 #: Number of mesh orders of a result.
 ORDERS = 10
 #: Vibration over the mean value that is rounding: a mesh of constant stiffness without friction stands still.
@@ -346,6 +347,23 @@ def predicted(
     return replace(prediction, roams=True) if kind is Motion.FOLLOWED else prediction
 
 
+def predicted_by_long_steps(pair: GearPair, factor: int) -> Prediction:
+    """Return the prediction for a pair whose teeth differ, with steps that are ``factor`` times as long.
+
+    Over a long hunting period it takes so much less time. ``docs/verification/uncertainty.md`` says how far
+    results with steps four times as long are from those of ``predict``.
+
+    Raises
+    ------
+    NumericalError : no motion was found. No linear motion stands in
+    """
+    supports = supports_of(pair, None)
+    steps = steps_of(LTVSystem.of(pair.healthy, "full", supports=supports)) // factor
+    with typed_errors():
+        motion = settled_motion(pair, default_samples(period_of(pair)), supports, steps)
+    return _of_plain(pair, plain_motion(motion, partial(provenance, pair)), Motion.UNILATERAL)
+
+
 def _stand_in(pair: GearPair, samples: int | None, error: NumericalError) -> Prediction:
     """The linear motion, stable or not, in place of the unilateral motion that was not found."""
     try:
@@ -353,12 +371,6 @@ def _stand_in(pair: GearPair, samples: int | None, error: NumericalError) -> Pre
     except NumericalError:
         raise error from None
     return replace(linear, reason=str(error), roams=isinstance(error, UnsettledError))
-
-
-def pulls(pair: GearPair, linear: xr.Dataset) -> bool:
-    """Return whether a tooth pair pulls in a linear motion."""
-    force = pair.operating.pinion_torque / pair.geometry.base_radius_pinion
-    return float(linear["normal_load"].min()) < _PULLS * force
 
 
 def measured(pair: GearPair, cycle: xr.Dataset, motion: Motion) -> Prediction:

@@ -13,6 +13,7 @@ _NOUNS = {
     "jump": "a jump",
     "unstable speed": "an unstable speed",
     "periodic": "a motion of many mesh cycles",
+    "runs": "a speed where runs do not settle",
 }
 
 
@@ -23,7 +24,8 @@ class Hazard:
     Attributes
     ----------
     speed_rpm : pinion speed [rpm]
-    kind : "unstable speed", "jump", "beats", "chaos", or "periodic", a motion of many mesh cycles
+    kind : "unstable speed", "jump", "beats", "chaos", "periodic", a motion of many mesh cycles, or "runs",
+        which do not settle at the operating speed
     how : how it happens
     """
 
@@ -44,13 +46,21 @@ class Hazard:
 
 
 def nearest_of(
-    unstable_rpm: float, multipliers: GearPairMultipliers, search: JumpSearch, operating_rpm: float
+    unstable_rpm: float,
+    multipliers: GearPairMultipliers,
+    search: JumpSearch,
+    operating_rpm: float,
+    *,
+    roams: bool,
 ) -> Hazard | None:
     """Return the unstable speed, jump, beats or chaos nearest to the operating speed; None: there is none.
 
     ``unstable_rpm``: the nearest unstable speed [rpm], NaN: none is known; ``multipliers``: of the linear
-    motion at the operating speed.
+    motion at the operating speed; ``roams``: whether runs at the operating speed come to no motion that
+    repeats, as in ``Prediction.roams``.
     """
+    if roams:
+        return Hazard(operating_rpm, "runs", "come to no motion that repeats")
     hazards = [] if math.isnan(unstable_rpm) else [Hazard(unstable_rpm, "unstable speed")]
     if multipliers.verdict == "unstable":
         hazards = [Hazard(operating_rpm, "unstable speed")]

@@ -587,4 +587,10 @@ class Results:
     @property
     def nearest_hazard(self) -> Hazard | None:
         """The unstable speed, jump, beats or chaos nearest to the operating speed; None: there is none."""
-        return nearest_of(self.unstable_rpm, self.multipliers, self.jump_search, self.operating_rpm)
+        return nearest_of(
+            self.unstable_rpm,
+            self.multipliers,
+            self.jump_search,
+            self.operating_rpm,
+            roams=self.prediction.roams,
+        )

@@ -195,8 +195,8 @@ def _roams(prediction: Prediction) -> str:
     size = quantity(prediction.peak_to_peak, "m", 3)
     return (
         "A run from the linear motion beats or is chaotic. Beside it a stable motion was found from a "
-        f"neighbouring torque or speed; its transmission error is {size}, and the numbers are its. How the "
-        "speed was reached decides which of the two runs."
+        f"neighbouring torque or speed. All numbers are of this motion; its transmission error is {size}. "
+        "Which of the two motions the pair comes to depends on how it reached the speed."
     )
 
 

@@ -20,7 +20,7 @@ from validation.prediction.assumed_teeth import (
     widened,
     with_assumed_class,
 )
-from validation.prediction.motion import Motion, measured
+from validation.prediction.motion import Motion, measured, predicted, predicted_by_long_steps
 
 #: The teeth of both gears push at all times. Everything is known but the torque.
 PAIR = known_sizes(unlike_pair("rack_25_degrees_always_pushing")).with_(
@@ -170,3 +170,16 @@ def test_ratios_are_those_of_the_linear_motion():
     low, middle, high = revolution_range(three)
     assert middle == pytest.approx(1.1 * swing)
     assert low < middle < high
+
+
+@pytest.mark.parametrize("name", ["larger_gear_drives_contact_lost", "rack_25_degrees_always_pushing"])
+def test_long_steps_change_little(name):
+    """RK4 with a quarter of the steps: teeth that touch inside a step are what is left, 0.2 % of these."""
+    machine = with_assumed_class(unlike_pair(name))
+    exact = predicted(machine)
+    rough = predicted_by_long_steps(machine, module.STEP_FACTOR)
+    for result in WIDENED:
+        assert rough.numbers[result] == pytest.approx(exact.numbers[result], rel=5e-3), result
+    assert rough.peak_to_peak == pytest.approx(exact.peak_to_peak, rel=1e-3)
+    assert rough.peak_to_peak != exact.peak_to_peak  # the steps are longer
+    assert rough.contact_lost is exact.contact_lost

@@ -77,9 +77,11 @@ def test_the_nearest_hazard_is_the_proven_speed() -> None:
         seconds=1.0,
     )
     stable = SimpleNamespace(verdict="stable")
-    assert nearest_of(38.0, stable, search, 22.0).speed_rpm == 38.0
-    assert nearest_of(math.nan, stable, search, 22.0) is None
-    assert nearest_of(38.0, SimpleNamespace(verdict="unstable"), search, 22.0).speed_rpm == 22.0
+    assert nearest_of(38.0, stable, search, 22.0, roams=False).speed_rpm == 38.0
+    assert nearest_of(math.nan, stable, search, 22.0, roams=False) is None
+    assert nearest_of(38.0, SimpleNamespace(verdict="unstable"), search, 22.0, roams=False).speed_rpm == 22.0
+    here = nearest_of(23.0, stable, search, 22.0, roams=True)
+    assert (here.speed_rpm, here.words) == (22.0, "runs come to no motion that repeats")
 
 
 def test_a_narrow_zone_is_in_the_facts_although_no_node_of_the_chart_is_unstable() -> None:

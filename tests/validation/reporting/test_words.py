@@ -639,9 +639,12 @@ def test_a_pair_whose_runs_do_not_settle_must_not_run_here(motion):
     first = page_one(results)
     assert first.verdict is Verdict.DO_NOT_RUN
     assert first.headline == "Do not run here: runs come to no motion that repeats."
+    hazard = next(row for row in first.numbers if row.key == "hazard")
+    assert hazard.value == 0.0
+    assert hazard.note.startswith("runs come to no motion that repeats at ")
     if motion is Motion.FOLLOWED:
         size = f"{1e6 * less.prediction.peak_to_peak:.3g} µm"
         assert f"its transmission error is {size}" in plain(first.reason)
-        assert "How the speed was reached decides" in first.reason
+        assert "depends on how it reached the speed" in first.reason
     else:
         assert first.reason.startswith("A run has not come to a motion. The numbers are those of the linear")

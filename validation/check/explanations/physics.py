@@ -23,7 +23,7 @@ from lumped.mesh.records import Records
 from lumped.model.equations import THETA_G, THETA_P, X_G, X_P, Y_G, Y_P, Structure, structure
 from lumped.model.mesh_cycle import MeshCycle
 from lumped.model.periodic_system import LTVSystem, supports_of
-from lumped.model.results import dataset
+from lumped.model.results import a_pair_pulls, dataset
 from lumped.model.revolution_motion import plain_motion
 from lumped.model.steady import UNSTABLE, periodic_solution, sample_times
 from lumped.model.tooth_laws import ToothLaws
@@ -70,8 +70,6 @@ from validation.check.reference import lumped_motion
 
 #: Samples in a mesh cycle of an altered motion.
 _SAMPLES = 512
-#: A tooth pair pulls below this load over the static mesh force.
-_PULLS = -1e-6
 #: Altered equations whose linear motion grows by more than this factor in a mesh cycle have no motion.
 _GROWS = 1.2
 
@@ -446,10 +444,8 @@ def _linear_motion(system: LTVSystem, physics: Physics) -> xr.Dataset | None:
         return None
     torques = {"pinion_torque": solution.pinion_torque, "brake_torque": solution.brake_torque}
     motion = dataset(system, times, solution.states, provenance(system.pair) | torques)
-    if not physics.pulling:
-        force = system.pinion_torque / system.pair.geometry.base_radius_pinion
-        if float(motion["normal_load"].min()) < _PULLS * force:
-            return None
+    if not physics.pulling and a_pair_pulls(system.pair, motion):
+        return None
     if isinstance(system, StaticFriction):
         friction = static_friction(system, system.cycle.sample(times))
         motion["friction_force"] = motion["friction_force"].copy(data=friction)

@@ -1,4 +1,4 @@
-"""Is the table of floquet/engine/proven.py complete, and do its functions and sections exist?"""
+"""Is the table of floquet/proven.py complete, and do its functions and sections exist?"""
 
 import ast
 import re
@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
-import floquet.engine.proven
+import floquet.proven
 
-ROOT = Path(floquet.engine.proven.__file__).parents[2]
+ROOT = Path(floquet.proven.__file__).parents[1]
 ROW = re.compile(r"^\| (?!statement)(.+?) \| (\S+\.py): (\w+) \| (.+?) \|$", re.MULTILINE)
-ROWS = ROW.findall(floquet.engine.proven.__doc__ or "")
+ROWS = ROW.findall(floquet.proven.__doc__ or "")
 MARK = re.compile(r"\bPROVEN\b")
 
 
