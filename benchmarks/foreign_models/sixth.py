@@ -19,7 +19,8 @@ from typing import Any, Literal
 import numpy as np
 
 import lumped
-from benchmarks.foreign_models import sixth_mistakes as wrong
+from benchmarks.foreign_models import sixth_mistakes as mistakes
+from benchmarks.foreign_models.cases import Case
 from benchmarks.foreign_models.differences import orders_of
 from benchmarks.foreign_models.recipe import Settings
 from benchmarks.foreign_models.sixth_pairs import SIXTH_PAIRS
@@ -43,84 +44,84 @@ SIXTH_WRONG = (
         "The torque of the gear's shaft was entered as the torque of the pinion.",
         "mixer",
         written("dte", "mesh_force", *PINION, samples=400, substeps=10),
-        drawing=wrong.torque_of_gear_shaft,
+        drawing=mistakes.torque_of_gear_shaft,
     ),
     SixthCase(
         "gear_speed",
         "The speed of the gear's shaft was entered as the speed of the pinion.",
         "joint",
         written("dte", *PINION, *GEAR, "mesh_force", samples=300, substeps=14, cycles=6),
-        drawing=wrong.speed_of_gear_shaft,
+        drawing=mistakes.speed_of_gear_shaft,
     ),
     SixthCase(
         "angle_20",
         "The pressure angle stayed at 20 degrees, though the rack has 25.",
         "excavator",
         written("dte", "x_p", "y_p", "mesh_force", method="newmark", samples=500, substeps=4),
-        drawing=wrong.entered(basic_rack__pressure_angle=20.0),
+        drawing=mistakes.entered(basic_rack__pressure_angle=20.0),
     ),
     SixthCase(
         "no_shift",
         "The profile shifts were left out: standard gears at the standard centre distance.",
         "windmill",
         written("dte", *FORCES, samples=512, substeps=8),
-        drawing=wrong.entered(pinion__profile_shift=0.0, gear__profile_shift=0.0),
+        drawing=mistakes.entered(pinion__profile_shift=0.0, gear__profile_shift=0.0),
     ),
     SixthCase(
         "wider_face",
         "The stiffness was computed with the wider face width instead of the common one.",
         "mixer",
         written("dte", "x_p", "x_g", "mesh_force", "theta_p", method="heun", samples=512, substeps=8),
-        model=wrong.wider_face,
+        model=mistakes.wider_face,
     ),
     SixthCase(
         "tips_without_shift",
         "The tip circles were computed without the profile shifts, r = m z/2 + m.",
         "rig",
         written("dte", "mesh_force", "x_p", "y_p", "y_g", samples=512, substeps=8, noise=0.005, seed=61),
-        drawing=wrong.tips_without_shift,
+        drawing=mistakes.tips_without_shift,
     ),
     SixthCase(
         "addendum_1",
         "The addendum coefficient stayed at 1, though the teeth are long.",
         "press",
         written("dte", "x_p", "y_p", "mesh_force", samples=256, substeps=16, phase=0.3),
-        drawing=wrong.entered(basic_rack__addendum_coefficient=1.0),
+        drawing=mistakes.entered(basic_rack__addendum_coefficient=1.0),
     ),
     SixthCase(
         "no_bores",
         "The bores were left out of mass and moment of inertia: solid discs.",
         "lathe",
         written("dte", "x_p", "x_g", "mesh_force", "theta_p", "theta_g", samples=512, substeps=8),
-        drawing=wrong.entered(pinion__bore=0.0, gear__bore=0.0),
+        drawing=mistakes.entered(pinion__bore=0.0, gear__bore=0.0),
     ),
     SixthCase(
         "inertia_without_half",
         "The moment of inertia of both gears lacks the factor 1/2.",
         "turbine",
         written("dte", *ANGLES, "mesh_force", "x_p", samples=400, substeps=10, origin=0.5),
-        model=wrong.double_inertia,
+        model=mistakes.double_inertia,
     ),
     SixthCase(
         "steel_for_bronze",
         "The gear of bronze has Young's modulus of steel.",
         "bronze",
         written("dte", "x_p", "x_g", "mesh_force", samples=512, substeps=8),
-        drawing=wrong.entered(gear__youngs_modulus=206.0),
+        drawing=mistakes.entered(gear__youngs_modulus=206.0),
     ),
     SixthCase(
         "two_bearings",
         "The stiffness of the whole support was given to each of two bearings of a shaft: twice as stiff.",
         "joint",
         written("dte", *PINION, *GEAR, *FORCES, samples=360, substeps=12),
-        model=wrong.two_bearings,
+        model=mistakes.two_bearings,
     ),
     SixthCase(
         "cold_oil",
         "The viscosity at 40 degrees was entered instead of that at operating temperature.",
         "windmill",
         written("dte", "y_p", "y_g", "bearing_force_y_p", "mesh_force", samples=512, substeps=8),
-        drawing=wrong.entered(lubricant__viscosity=290.0),
+        drawing=mistakes.entered(lubricant__viscosity=290.0),
     ),
     SixthCase(
         "pitch_radii",
@@ -128,36 +129,36 @@ SIXTH_WRONG = (
         "student",
         written("dte", *ANGLES, "mesh_force", samples=512, substeps=8),
         torsional=True,
-        model=wrong.pitch_radii_in_equations,
-        exported=wrong.dte_by_pitch_radii,
+        model=mistakes.pitch_radii_in_equations,
+        exported=mistakes.dte_by_pitch_radii,
     ),
     SixthCase(
         "one_way_friction",
         "The friction force keeps one direction: it does not reverse at the pitch point.",
         "old_mill",
         written("dte", "y_p", "y_g", "x_p", "bearing_force_y_p", method="newmark", samples=600, substeps=4),
-        model=wrong.one_way_friction,
+        model=mistakes.one_way_friction,
     ),
     SixthCase(
         "no_friction_moments",
         "Friction acts on the bearings only; its moments about the gear axes were left out.",
         "stub",
         written("dte", "x_p", "y_p", "mesh_force", *ANGLES, samples=512, substeps=8),
-        model=wrong.no_friction_moments,
+        model=mistakes.no_friction_moments,
     ),
     SixthCase(
         "friction_reversed",
         "The friction force has the wrong sign on all teeth, as if the gear drove.",
         "excavator",
         written("dte", "y_p", "y_g", "x_p", "mesh_force", samples=512, substeps=8),
-        model=wrong.reversed_friction,
+        model=mistakes.reversed_friction,
     ),
     SixthCase(
         "equal_shares",
         "Friction takes the static load in equal parts on the pairs in contact.",
         "lathe",
         written("dte", "y_p", "y_g", "bearing_force_y_p", "bearing_force_y_g", samples=512, substeps=8),
-        runs=wrong.equal_static_shares,
+        runs=mistakes.equal_static_shares,
     ),
     SixthCase(
         "mean_stiffness",
@@ -165,14 +166,14 @@ SIXTH_WRONG = (
         "student",
         written("dte", *ANGLES, "mesh_force", samples=512, substeps=8),
         torsional=True,
-        runs=wrong.mean_stiffness,
+        runs=mistakes.mean_stiffness,
     ),
     SixthCase(
         "c_gamma_as_single",
         "The mesh stiffness c_gamma of ISO 6336-1 was used as the stiffness of a single pair.",
         "mixer",
         written("dte", "x_p", "mesh_force", "bearing_force_x_g", samples=640, substeps=7),
-        model=wrong.mesh_stiffness_as_single,
+        model=mistakes.mesh_stiffness_as_single,
     ),
     SixthCase(
         "no_series",
@@ -180,7 +181,7 @@ SIXTH_WRONG = (
         "student",
         written("dte", "theta_p", "mesh_force", method="heun", samples=1024, substeps=4, noise=0.01, seed=62),
         torsional=True,
-        model=wrong.stiffer(2.0),
+        model=mistakes.stiffer(2.0),
     ),
     SixthCase(
         "teeth_pull",
@@ -195,7 +196,7 @@ SIXTH_WRONG = (
         "The mesh damping lacks the factor 2: c = zeta sqrt(k m_e).",
         "rig",
         written("dte", "mesh_force", *PINION, "x_g", samples=512, substeps=8),
-        drawing=wrong.half_damping,
+        drawing=mistakes.half_damping,
     ),
     SixthCase(
         "no_supports",
@@ -209,29 +210,29 @@ SIXTH_WRONG = (
         "The displacements of the gears on their bearings do not enter the approach of the teeth.",
         "bronze",
         written("dte", "x_p", "x_g", "mesh_force", "theta_p", samples=512, substeps=8),
-        model=wrong.bearings_apart,
-        exported=wrong.dte_of_rotations,
+        model=mistakes.bearings_apart,
+        exported=mistakes.dte_of_rotations,
     ),
     SixthCase(
         "no_relief",
         "The tip relief was left out: perfect involutes.",
         "relieved",
         written("dte", "x_p", "y_p", "mesh_force", samples=512, substeps=8),
-        model=wrong.perfect_involutes,
+        model=mistakes.perfect_involutes,
     ),
     SixthCase(
         "static_error_added",
         "The static transmission error was added as an excitation, beside the stiffness that varies.",
         "rig",
         written("dte", "mesh_force", "x_p", "x_g", samples=512, substeps=8),
-        model=wrong.static_error_added,
+        model=mistakes.static_error_added,
     ),
     SixthCase(
         "transient",
         "The record starts at rest: the transient is in it.",
         "stub",
         written("dte", "x_p", "y_p", "mesh_force", samples=256, substeps=16, cycles=5),
-        runs=wrong.from_rest,
+        runs=mistakes.from_rest,
     ),
     SixthCase(
         "long_euler_steps",
@@ -244,7 +245,7 @@ SIXTH_WRONG = (
         "The stiffness was read from a table of few points with straight lines between them.",
         "lathe",
         written("dte", "x_p", "mesh_force", "bearing_force_x_p", samples=512, substeps=8),
-        runs=wrong.coarse_stiffness(10),
+        runs=mistakes.coarse_stiffness(10),
     ),
     SixthCase(
         "backward_euler",
@@ -257,70 +258,70 @@ SIXTH_WRONG = (
         "The mesh stiffness has only its mean and its first harmonic.",
         "bronze",
         written("dte", "x_p", "x_g", "mesh_force", samples=512, substeps=8),
-        runs=wrong.first_harmonic,
+        runs=mistakes.first_harmonic,
     ),
     SixthCase(
         "dte_of_rotations",
         "The transmission error was written from the rotations only.",
         "windmill",
         written("dte", "x_p", "x_g", "mesh_force", *ANGLES, samples=512, substeps=8),
-        exported=wrong.dte_of_rotations,
+        exported=mistakes.dte_of_rotations,
     ),
     SixthCase(
         "line_of_centres",
         "Displacements and bearing forces were written along and across the line of centres.",
         "excavator",
         written("dte", *PINION, *GEAR, *FORCES, samples=512, substeps=8, noise=0.005, seed=63),
-        exported=wrong.along_line_of_centres,
+        exported=mistakes.along_line_of_centres,
     ),
     SixthCase(
         "forces_on_housing",
         "The bearing forces were written as those on the housing: the opposite sign.",
         "press",
         written("dte", "x_p", *FORCES, samples=384, substeps=10),
-        exported=wrong.on_the_housing,
+        exported=mistakes.on_the_housing,
     ),
     SixthCase(
         "micrometres",
         "The transmission error was written in micrometres.",
         "old_mill",
         written("dte", "x_p", "y_p", "mesh_force", samples=512, substeps=8),
-        exported=wrong.in_micrometres,
+        exported=mistakes.in_micrometres,
     ),
     SixthCase(
         "sense_of_rotation",
         "The rotation of the gear was written with the opposite sign.",
         "lathe",
         written("dte", *ANGLES, "mesh_force", samples=512, substeps=8, phase=0.6),
-        exported=wrong.one_sense_of_rotation,
+        exported=mistakes.one_sense_of_rotation,
     ),
     SixthCase(
         "one_pair",
         "The mesh force was written from one tooth pair only.",
         "press",
         written("dte", "x_p", "mesh_force", samples=512, substeps=8),
-        exported=wrong.one_pair,
+        exported=mistakes.one_pair,
     ),
     SixthCase(
         "gear_teeth_in_frequency",
         "The mesh frequency was computed with the number of teeth of the gear.",
         "turbine",
         written("dte", "x_p", "y_p", "mesh_force", samples=512, substeps=20),
-        model=wrong.gear_teeth_in_frequency,
+        model=mistakes.gear_teeth_in_frequency,
     ),
     SixthCase(
         "moving_mean",
         "The curves were smoothed before export by a moving mean over a quarter of a mesh cycle.",
         "relieved",
         written("dte", "x_p", "mesh_force", "bearing_force_x_p", samples=512, substeps=8),
-        exported=wrong.smoothed,
+        exported=mistakes.smoothed,
     ),
     SixthCase(
         "whole_angles",
         "The rotations were written as whole angles, with the uniform rotation in them.",
         "stub",
         written("dte", *ANGLES, "x_p", samples=512, substeps=8),
-        exported=wrong.whole_angles,
+        exported=mistakes.whole_angles,
     ),
 )
 
@@ -354,6 +355,19 @@ SIXTH_SOUND = (
 )
 
 SIXTH = (*SIXTH_WRONG, *SIXTH_SOUND)
+
+
+def judging(kind: str | None = None) -> list[Case]:
+    """Return the cases of the sixth set, of a kind ("sound" or "wrong") or all."""
+    wrong = [
+        Case(f"sixth {n:02d} {one.name}", "wrong", (one.truth,), one.pair, one.curves)
+        for n, one in enumerate(SIXTH_WRONG, start=1)
+    ]
+    sound = [
+        Case(f"sixth sound {n} {one.name}", "sound", (), one.pair, one.curves)
+        for n, one in enumerate(SIXTH_SOUND, start=1)
+    ]
+    return [case for case in (*sound, *wrong) if kind in (None, case.kind)]
 
 
 #: Smallest difference that some channel of a wrong model has, and largest of a sound one.
