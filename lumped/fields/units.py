@@ -58,6 +58,12 @@ _WHERE: dict[str, tuple[Rewriting, ...]] = {
     "N/m": _POUND_FORCE,
     "rpm": _TURNS,
     "degC": ((re.compile(r"(?<=[\d.])\s*[°º]?\s*([CF])\s*$"), r" deg\1"),),
+    # A degree is a difference of temperatures here; pint would count degrees Celsius from absolute zero.
+    "1/K": (
+        (re.compile(r"/\s*(?:°\s*C|º\s*C|deg\s*C|degC|C|kelvin)\s*$"), "/ K"),
+        (re.compile(r"/\s*(?:°\s*F|º\s*F|deg\s*F|degF|F)\s*$"), "/ delta_degF"),
+        (re.compile(r"(?<=[\d.])\s*K(?:\^-1|⁻¹)\s*$"), " 1/K"),
+    ),
 }
 #: Units that pint lacks, in the notation of pint. Prefixes work with these units too.
 DEFINITIONS = (
@@ -129,6 +135,7 @@ UNITS: dict[str, StatedUnit] = {
     "mPa*s": StatedUnit("Pa*s", Decimal("1e-3"), "a dynamic viscosity", "10 cP"),
     "mm**2/s": StatedUnit("m**2/s", Decimal("1e-6"), "a kinematic viscosity", "32 cSt"),
     "degC": StatedUnit("K", Decimal(1), "a temperature", "140 degF"),
+    "1/K": StatedUnit("1/K", Decimal(1), "a change per degree of temperature", "0.2 %/degC"),
     "mm/s": StatedUnit("m/s", Decimal("1e-3"), "a velocity", "0.1 inch/s"),
     "m/s**2": StatedUnit("m/s**2", Decimal(1), "an acceleration", "50 mm/s**2"),
     "rad/s**2": StatedUnit("rad/s**2", Decimal(1), "an angular acceleration", "2 deg/s**2"),

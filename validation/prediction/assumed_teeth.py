@@ -6,10 +6,10 @@ gears and, where the inputs are varied, other inputs. Each machine is compared w
 teeth: the ratio of both says what the teeth do, and the ratios widen the range of the inputs.
 
 Each motion is that of ``predict`` over the hunting period, as for the teeth of a file, but for steps that are
-``STEP_FACTOR`` times as long. They err by 0.2 % (docs/verification/uncertainty.md), while the machines differ
-by tens of per cent. The linear motion takes less time, too, but with the friction law of Benedict and Kelley
-it changes with the number of samples: the peak to peak of 19/41 with drawn teeth is 50, 97 and 201 um for 32,
-64 and 256 samples, 50 um by ``predict``.
+``STEP_FACTOR`` times as long. They err by 1 % at most (docs/verification/uncertainty.md), while the machines
+differ by tens of per cent. The linear motion takes less time, too, but with the friction law of Benedict and
+Kelley it changes with the number of samples: the peak to peak of 19/41 with drawn teeth is 50, 97 and 201 um
+for 32, 64 and 256 samples, 50 um by ``predict``.
 
 Source: prediction interval of one further value, log-normal with unknown mean and variance; Hahn and Meeker,
 Statistical Intervals, 1991, section 4.7.

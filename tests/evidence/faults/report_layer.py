@@ -26,7 +26,10 @@ from tests.evidence.faults.fault import REPORT_FAULTS, Fault
 from tests.evidence.faults.rewriting import applied
 from tests.validation.reporting.written import PAIRS, Written, known, write_report
 
-_MODULES = ("test_numbers", "test_tables", "test_words", "test_curves", "test_figures", "test_report")
+_MODULES = (
+    "test_numbers", "test_numbers_of_trust", "test_tables", "test_words", "test_curves", "test_figures",
+    "test_report",
+)  # fmt: skip
 #: Results that follow from others at once.
 _QUICK = ("budget", "unstable_speeds", "same_equations", "outside")
 

@@ -174,7 +174,7 @@ def test_ratios_are_those_of_the_linear_motion():
 
 @pytest.mark.parametrize("name", ["larger_gear_drives_contact_lost", "rack_25_degrees_always_pushing"])
 def test_long_steps_change_little(name):
-    """RK4 with a quarter of the steps: teeth that touch inside a step are what is left, 0.2 % at most."""
+    """RK4 with a quarter of the steps: teeth that touch inside a step are what is left, 0.2 % of these."""
     machine = with_assumed_class(unlike_pair(name))
     exact = predicted(machine)
     rough = predicted_by_long_steps(machine, module.STEP_FACTOR)

@@ -6,6 +6,7 @@ import pytest
 
 # The tests that recompute tables register themselves.
 import tests.validation.reporting.test_numbers
+import tests.validation.reporting.test_numbers_of_trust
 import tests.validation.reporting.test_words  # noqa: F401
 from tests.validation.reporting.columns import RECOMPUTED, Recomputation, complaints, wrong_cell
 

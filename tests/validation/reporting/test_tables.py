@@ -5,6 +5,7 @@ import re
 import pandas as pd
 
 import tests.validation.reporting.test_numbers
+import tests.validation.reporting.test_numbers_of_trust
 import tests.validation.reporting.test_words  # noqa: F401  (its recomputations register themselves)
 from tests.validation.reporting import recomputed
 from tests.validation.reporting.columns import RECOMPUTED
