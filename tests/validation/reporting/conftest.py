@@ -1,5 +1,7 @@
 """The reports that the tests of this folder read, written once."""
 
+from collections.abc import Iterator
+
 import pytest
 
 from tests.validation.reporting.written import PAIRS, Written, known, without_variant, write_report
@@ -12,7 +14,9 @@ def written(request, tmp_path_factory) -> Written:
     return write_report(request.param, folder, results=known(request.param))
 
 
-@pytest.fixture(autouse=True)
-def no_variant(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.fixture(autouse=True, scope="module")
+def no_variant() -> Iterator[None]:
     """Results that tests ask for later than the report of ``written`` leave the same out."""
-    without_variant(monkeypatch)
+    with pytest.MonkeyPatch.context() as patch:
+        without_variant(patch)
+        yield
