@@ -1,11 +1,12 @@
-"""Processor time of one prediction, of samples and of the band over speed, over that of their kernels.
+"""Processor time of variations, predictions, samples and the band over speed, over that of a baseline.
 
     python -m benchmarks.bench_prediction [PAIRS] [--rounds 8] [--samples 64]
 
-prints the table of docs/verification/uncertainty.md. The baseline of a line is the time that the runs by
-momentary load take in their compiled kernel, ``run_cycles``, in the same predictions: the rest is Python and
-the laws of the tooth pairs. The baseline of the band is one linear motion with numerical error, by
-``lumped.steady_state``. All kernels are loaded before.
+prints the table of docs/verification/uncertainty.md. The baseline of a variation, which has other numbers in
+all uncertain inputs, is the same pair read from its whole plain data. The baseline of a prediction and of a
+sample is the time that the runs by momentary load take in their compiled kernel, ``run_cycles``, in the same
+predictions: the rest is Python and the laws of the tooth pairs. The baseline of the band is one linear motion
+with numerical error, by ``lumped.steady_state``. All kernels are loaded before.
 """
 
 from __future__ import annotations
@@ -17,10 +18,15 @@ from collections.abc import Callable, Sequence
 from typing import Any
 from unittest import mock
 
+import numpy as np
+
 import lumped
 from benchmarks.bench_uncertainty import PAIRS, line, speeds_between
 from floquet.gear.axes import speed_range
 from lumped.model import momentary_load
+from lumped.schema.changes import changed
+from lumped.schema.pair import GearPair, validated
+from validation.prediction.inputs import SEED_FIELDS, uncertain_inputs
 from validation.prediction.motion import predicted
 from validation.prediction.uncertainty import speed_band, uncertainty
 
@@ -31,6 +37,8 @@ PREDICTED = {name: pair for name, (pair, _) in PAIRS.items()} | {
 #: Speeds and samples of the band over speed in a full report.
 BAND_SPEEDS = 41
 BAND_SAMPLES = 8
+#: Variations of a pair.
+_VARIATIONS = 200
 
 
 class KernelClock:
@@ -60,13 +68,32 @@ def measured(work: Callable[[], object]) -> tuple[float, float]:
         return time.process_time() - start, clock.seconds
 
 
+def variations(pair: GearPair, count: int) -> tuple[float, float]:
+    """Processor time of variations of a pair [s]: by ``with_``, and from the whole plain data."""
+    rng = np.random.default_rng(1)
+    numbers = [one for one in uncertain_inputs(pair) if not one.choices and one.field not in SEED_FIELDS]
+    changes = [
+        {path: value for one in numbers for path, value in one.changes(float(rng.random())).items()}
+        for _ in range(count)
+    ]
+    seconds = [0.0, 0.0]
+    for fields in changes:  # in turn, because other programs share the processor
+        for place, vary in enumerate((pair.with_, lambda one: validated(changed(pair, one), "whole"))):
+            start = time.process_time()
+            vary(fields)
+            seconds[place] += time.process_time() - start
+    return seconds[0], seconds[1]
+
+
 def report_of(name: str, rounds: int, samples: int) -> None:
-    """Lines of one pair: a prediction, a sample, a speed of the band."""
+    """Lines of one pair: a variation, a prediction, a sample, a speed of the band."""
     pair = PREDICTED[name]
+    light, whole = variations(pair, _VARIATIONS)
+    line(name, "a variation", 1e3 * light / _VARIATIONS, 1e3 * whole / _VARIATIONS, light / whole)
     torque = pair.operating.pinion_torque
-    changed = [pair.with_(torque=f"{torque * (1.0 + 1e-4 * k)!r} N m") for k in range(1, rounds + 1)]
+    nearby = [pair.with_(torque=f"{torque * (1.0 + 1e-4 * k)!r} N m") for k in range(1, rounds + 1)]
     predicted(pair)
-    alone, kernel = measured(lambda: [predicted(one) for one in changed])
+    alone, kernel = measured(lambda: [predicted(one) for one in nearby])
     line(name, "a prediction", 1e3 * alone / rounds, 1e3 * kernel / rounds, alone / kernel)
     known = uncertainty(pair, 16)
     total, kernel = measured(lambda: uncertainty(pair, samples, seed=2))

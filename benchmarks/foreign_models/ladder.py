@@ -43,6 +43,7 @@ def report(case: Case) -> None:
         print(
             f"    {step.name} {step.factor}: {step.misfit:.4f}{' or ' + others if others else ''}", flush=True
         )
+        print(f"        {step.sentence}")
 
 
 def main(arguments: Sequence[str]) -> None:

@@ -6,7 +6,7 @@ import unicodedata
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Self
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, GetCoreSchemaHandler
 from pydantic_core import core_schema
@@ -43,17 +43,42 @@ class Section(BaseModel):
         library = {name for name in dir(BaseModel) if not name.startswith("__")}
         return sorted(set(super().__dir__()) - library)
 
+    @property
+    def derived_fields(self) -> tuple[str, ...]:
+        """Fields whose values follow from others: a file does not have them."""
+        return ()
+
+    def with_values(self, values: dict[str, Any]) -> Self:
+        """Return the section with other values in SI, after the rules of the section alone.
+
+        Raises
+        ------
+        ParameterError : values that the section cannot have together
+        """
+        changed = self.model_copy(update=dict.fromkeys(self.derived_fields) | values)
+        for rule in _rules(type(self)):
+            getattr(changed, rule)()
+        return changed
+
     def to_mapping(self) -> dict[str, Any]:
         """Return nested plain data in file units; None is left out, as a file cannot say it."""
         result: dict[str, Any] = {}
+        derived = self.derived_fields
         for name, unit in _stated_units(type(self)):
-            value = getattr(self, name)
+            value = None if name in derived else getattr(self, name)
             if isinstance(value, tuple):
                 if value:  # an empty list says nothing
                     result[name] = [_plain(one, unit) for one in value]
             elif value is not None:
                 result[name] = _plain(value, unit)
         return result
+
+
+@lru_cache(maxsize=256)
+def _rules(section: type[Section]) -> tuple[str, ...]:
+    """Names of the rules that check the values of a section together."""
+    rules = section.__pydantic_decorators__.model_validators
+    return tuple(name for name, rule in rules.items() if rule.info.mode == "after")
 
 
 @lru_cache(maxsize=256)

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import ClassVar, Literal
 
 from lumped.display.result import DisplayedResult
@@ -176,6 +177,7 @@ class Geometry(DisplayedResult):
         )
 
 
+@lru_cache(maxsize=256)  # samples of uncertain tips have a few tips in common
 def build_geometry(
     pinion: Wheel, gear: Wheel, centre_distance: float | None, backlash: float, pinion_speed: float
 ) -> Geometry:
@@ -314,7 +316,8 @@ class ToothProblem(FieldProblem):
     sense: int = 1
 
 
-def existence_problems(pinion: Wheel, gear: Wheel, g: Geometry, backlash: float) -> list[FieldProblem]:
+@lru_cache(maxsize=256)
+def existence_problems(pinion: Wheel, gear: Wheel, g: Geometry, backlash: float) -> tuple[FieldProblem, ...]:
     """Return the reasons why a pair cannot exist, each with the field of the schema to change.
 
     ``backlash`` is the backlash by thinning of the teeth [m].
@@ -328,7 +331,7 @@ def existence_problems(pinion: Wheel, gear: Wheel, g: Geometry, backlash: float)
     if play < -_WEDGE_TOLERANCE * pinion.tooth.module:
         value = f"{g.centre_distance * 1e3:.6g} mm (backlash {play * 1e3:.4f} mm)"
         problems.append(FieldProblem("centre_distance", value, "normal backlash >= 0", _WEDGE))
-    return problems
+    return tuple(problems)
 
 
 def _of_the_pair(g: Geometry) -> Iterator[FieldProblem]:

@@ -1,10 +1,10 @@
 """Tip corners: where the flanks of a tooth pair end, and where a tip corner begins to push.
 
-Flanks end where the tip corner of one gear leaves the flank of the mate. An undercut mate has an edge there
-as well, which ends its own flank. Beyond the end both corners have a gap from the other gear's flank, and the
-larger of the two gaps is added to the gap that the errors of the teeth leave (``write_gap`` in
-``lumped/mesh/element.py``). A corner pushes where the approach of the gears exceeds the sum: the compression
-is positive then.
+Flanks end where the tip corner of one gear leaves the flank of the mate. Beyond this end the tip has a gap
+from the flank. An undercut mate has an edge at the end of its own flank, and the edge has a gap, too; the
+larger of the two gaps counts. ``write_gap`` in ``lumped/mesh/element.py`` adds it to the gap that the errors
+of the teeth leave. A corner pushes where the approach of the gears exceeds the sum: the compression is
+positive then.
 
 Sources: docs/theory/contact_energy.md, "Tip corner".
 """

@@ -43,9 +43,10 @@ Passed = TypeVar("Passed")
 def balanced_start(system: LTVSystem, phi: FloatArray, forced: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Initial state and weights of the forcings for which a linear motion is periodic.
 
-    The map over the period has a defective double multiplier +1 (the rigid rotation), so one torque is an
-    unknown: the brake torque or, where the file gives the brake torque, the mean driving torque. Bordering
-    the map with this torque and with the position of the rigid rotation makes the equations regular.
+    Both gears may turn together by any angle, and any difference of the torques makes them turn faster: the
+    map over the period has a double multiplier +1, and its equations alone have no single solution. So one
+    torque is an unknown: the brake torque or, where the file gives the brake torque, the mean driving torque.
+    With this unknown, and with the angle of the common rotation prescribed, the solution is unique.
 
     Parameters
     ----------

@@ -60,6 +60,8 @@ _ALTERNATIVES = (
         for end in ("tip", "root")
     ),
 )
+#: Source of a value that the user changed.
+BY_THE_USER = "varied by the user"
 #: Field whose default follows from other fields, and these other fields.
 _FILLET = "basic_rack.fillet_radius_coefficient"
 _OF_FILLET = ("basic_rack.pressure_angle", "basic_rack.dedendum_coefficient")
@@ -113,13 +115,13 @@ def changed(pair: Section, changes: Mapping[str, Any]) -> dict[str, Any]:
     # The model first: it decides which other keys its table may have.
     for path, request in sorted(changes.items(), key=lambda change: change[0] != _STIFFNESS):
         value = request.item() if isinstance(request, np.generic) else request
-        if _reads(pair, path, value) and not inside_any(assumed, [path]):
+        if reads(pair, path, value) and not inside_any(assumed, [path]):
             continue
         outdated = [path]
         if path == _STIFFNESS:
             outdated.append(_SECTION)
             _assign(type(pair), data, outdated[-1], {})
-        for group in _alternatives_of(path) if value is not None else ():
+        for group in alternatives_of(path) if value is not None else ():
             outdated += group
             for other in group:
                 if not path.startswith(f"{other}.") and other not in changes:
@@ -129,13 +131,13 @@ def changed(pair: Section, changes: Mapping[str, Any]) -> dict[str, Any]:
             for one in inside_any(table, outdated):
                 del table[one]
         if path not in (*WORDS, *ABOUT) and value is not None:
-            sources[path] = "varied by the user"
+            sources[path] = BY_THE_USER
     return data
 
 
 @lru_cache(maxsize=1024)  # every variation of a pair has the same paths
-def _alternatives_of(path: str) -> tuple[tuple[str, ...], ...]:
-    """Groups of alternative fields to which a field, or a field around it, belongs."""
+def alternatives_of(path: str) -> tuple[tuple[str, ...], ...]:
+    """Return the groups of alternative fields to which a field, or a field around it, belongs."""
     return tuple(group for group in _ALTERNATIVES if any(within(path, one) for one in group))
 
 
@@ -167,8 +169,8 @@ def _other_bearing(pair: Section, data: dict[str, Any], gear: str, changes: Mapp
             table.pop(start + key, None)
 
 
-def _reads(pair: Section, path: str, value: object) -> bool:
-    """Whether a field already reads as a value."""
+def reads(pair: Section, path: str, value: object) -> bool:
+    """Return whether a field already reads as a value."""
     result: object = pair
     for part in path.split("."):
         if isinstance(result, tuple) and _is_entry(result, part):

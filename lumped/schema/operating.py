@@ -83,11 +83,10 @@ class OperatingPoint(Section):
         power = SIValue(self.pinion_torque * speed, "W")
         return self.model_copy(update={"pinion_speed": SIValue(speed, "rad/s"), "pinion_power": power})
 
-    def to_mapping(self) -> dict[str, Any]:
-        """Return plain data in file units, without the power, which follows from torque and speed."""
-        data = super().to_mapping()
-        data.pop("pinion_power")
-        return data
+    @property
+    def derived_fields(self) -> tuple[str, ...]:
+        """The power, which follows from torque and speed."""
+        return ("pinion_power",)
 
 
 def torque_of(power: object, speed: object) -> float | None:

@@ -55,6 +55,7 @@ from lumped.schema.operating import LARGEST_SPEED as LARGEST_SPEED
 from lumped.schema.operating import OperatingPoint as OperatingPoint
 from lumped.schema.posterior import ERROR, PosteriorTable, problems_of_columns
 from lumped.schema.shafts import Shafts
+from lumped.schema.value_changes import ValueChanges, value_changes
 
 #: Name that a pair does not have -> what to write.
 _INSTEAD = {
@@ -71,6 +72,8 @@ _INSTEAD = {
 }
 
 
+#: Gears as cut: samples of uncertain tips have a few in common, with what was computed of their teeth.
+_cut = lru_cache(maxsize=256)(Wheel)
 #: Problems that a wrong centre distance may cause.
 _OF_THE_MESH = ("centre_distance", "contact_ratio", "pinion.tip_diameter", "gear.tip_diameter")
 #: Largest normal backlash over module at a centre distance, of teeth as cut. The allowances of ISO/TR 10064-2
@@ -157,15 +160,7 @@ class GearPair(Section, metaclass=_InOurWords):
 
     @model_validator(mode="after")
     def _must_exist(self) -> GearPair:
-        problems = advised(self, existence_problems(*self.wheels, self.geometry, self.mesh.backlash))
-        problems = self._of_contradicting_sizes(problems)
-        problems += [*self._too_light("pinion"), *self._too_light("gear")]
-        if self.friction.law == TABLE and self.friction.table is not None and not problems:
-            problems += self.friction.table.problems(self.geometry)
-        problems += [*self._missing_teeth("pinion", 0), *self._missing_teeth("gear", 1)]
-        problems += [*self._relief_counted_twice()]
-        if problems:
-            raise ParameterError(problems, self.name)
+        self._parts_fit(self._problems_of_existence())
         wrong = [problem for path, _ in self.sources for problem in _path_problems(path, "sources")]
         wrong += [problem for path, _ in self.uncertainty for problem in _path_problems(path, "uncertainty")]
         wrong += problems_of(type(self), self.assumed)
@@ -174,8 +169,26 @@ class GearPair(Section, metaclass=_InOurWords):
         wrong += problems_of_columns(self.posterior)
         if wrong:
             raise ParameterError(wrong)
+        return self._completed()
+
+    def _problems_of_existence(self) -> list[FieldProblem]:
+        problems = existence_problems(*self.wheels, self.geometry, self.mesh.backlash)
+        return self._of_contradicting_sizes(advised(self, list(problems)))
+
+    def _parts_fit(self, problems: list[FieldProblem]) -> None:
+        """Refuse the problems of existence, with those of masses, tables, single teeth and relief."""
+        problems = [*problems, *self._too_light("pinion"), *self._too_light("gear")]
+        if self.friction.law == TABLE and self.friction.table is not None and not problems:
+            problems += self.friction.table.problems(self.geometry)
+        problems += [*self._missing_teeth("pinion", 0), *self._missing_teeth("gear", 1)]
+        problems += [*self._relief_counted_twice()]
+        if problems:
+            raise ParameterError(problems, self.name)
+
+    def _completed(self) -> GearPair:
+        """Set what the geometry decides: where reliefs start, and the load of rolling bearings."""
         for index, name in enumerate(("pinion", "gear")):
-            self.__dict__[name] = self._with_relief(name, self.flank(index))
+            self.__dict__[name] = self._with_relief(name, index)
         force = self.operating.pinion_torque / self.geometry.base_radius_pinion
         self.__dict__["bearings"] = self.bearings.under(force)
         return self
@@ -336,12 +349,14 @@ class GearPair(Section, metaclass=_InOurWords):
         else:
             alteration = self.tip_alteration if gear.tip_alteration is None else gear.tip_alteration
             tip = tooth.reference_radius + rack.module * (rack.addendum_coefficient + shift) + alteration
-        return Wheel(tooth, tip, gear.face_width, gear.bore)
+        return _cut(tooth, tip, gear.face_width, gear.bore)
 
-    def _with_relief(self, name: str, flank: Flank) -> Gear:
+    def _with_relief(self, name: str, index: int) -> Gear:
         gear: Gear = getattr(self, name)
+        if gear.tip_relief is None and gear.root_relief is None:
+            return gear
         try:
-            return gear.with_relief_on(flank)
+            return gear.with_relief_on(self.flank(index))
         except ParameterError as error:
             problems = [replace(one, field=f"{name}.{one.field}") for one in error.problems]
             raise ParameterError(problems, self.name) from None
@@ -550,7 +565,34 @@ class GearPair(Section, metaclass=_InOurWords):
         return pair
 
     def _changed(self, fields: Mapping[str, Any]) -> GearPair:
+        if (change := value_changes(self, fields)) is not None:
+            # The whole check refuses in the words of all rules together.
+            with suppress(ParameterError, ArithmeticError):
+                return self._with_values(change)
         return validated(changed(self, fields), f"{self.name} varied")
+
+    def _with_values(self, change: ValueChanges) -> GearPair:
+        """The pair with other values in fields that it has; only rules that read these fields are checked."""
+        sections = {name: getattr(self, name) for name in GearPair.model_fields}
+        pair = GearPair.model_construct(**sections | change.sections | {"sources": change.sources})
+        speed = pair.operating.pinion_speed
+        geometry = self.geometry if speed == self.operating.pinion_speed else self.geometry.at_speed(speed)
+        problems: list[FieldProblem] = []
+        if pair._cut_and_placed == self._cut_and_placed and math.isfinite(geometry.mesh_period):
+            shared = {name: getattr(self, name) for name in ("wheels", "profile_shifts", "tip_alteration")}
+            pair.__dict__.update(shared, geometry=geometry)
+        else:
+            problems = pair._problems_of_existence()
+        pair._parts_fit(problems)
+        pair._completed()
+        assumed = self.assumed.without(*change.outdated, *self._assumed_sizes())
+        pair.__dict__["assumed"] = Assumed({**assumed, **pair._assumed_sizes()})
+        return pair
+
+    @property
+    def _cut_and_placed(self) -> tuple[tuple[Wheel, Wheel], float | None, float]:
+        """What decides the geometry beside the speed: the gears as cut, their distance, and the backlash."""
+        return self.wheels, self.centre_distance, self.mesh.backlash
 
 
 _VARIATION = "Make a variation: pair.with_(speed=2000). A pair does not change and needs no copy."

@@ -107,9 +107,7 @@ class ProfileRelief(Section):
         allowed = f"{low:.4f} to {high:.4f} deg"
         return refuse(f"{kind}.start_roll_angle", value, allowed, _ON_IT)
 
-    def to_mapping(self) -> dict[str, Any]:
-        """Return plain data in file units, with the user's field for the start."""
-        data = super().to_mapping()
-        if not self.by_angle:
-            data.pop("start_roll_angle", None)
-        return data
+    @property
+    def derived_fields(self) -> tuple[str, ...]:
+        """The roll angle, where the file states the start in another way."""
+        return () if self.by_angle else ("start_roll_angle",)

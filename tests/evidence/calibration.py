@@ -1,9 +1,15 @@
-"""How often ranges of ``spurcheck.calibrate`` hold the truth: ``python -m tests.evidence.calibration``.
+"""How often ranges of ``spurcheck.calibrate`` hold the truth, and whether its next test keeps its promise.
+
+``python -m tests.evidence.calibration`` judges rigs of five kinds, then the next test; ``--kinds promise``
+judges the next test alone.
 
 A truth is a machine drawn from the ranges of a pair, of one of five kinds: of the same model, with another
 stiffness model, with prescribed contact, with the motion of the multibody model, or with teeth of its own.
 Two runs with noise record its transmission error. The ranges of page 1 at a third speed, 5 to 95 %, hold the
 truth or not, with the discrepancy of the model and without.
+
+A promise is kept where the recommended test, run on the rig of the same model, leaves as much of the width of
+page 1 as the calibration before it said.
 """
 
 from __future__ import annotations
@@ -13,6 +19,7 @@ import json
 import sys
 import time
 import warnings
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +31,7 @@ from lumped import GearPair
 from lumped.errors import SpurcheckError
 from validation.calibrate import calibrate
 from validation.calibrate.forms import machine, numeric_inputs
+from validation.calibrate.next_test import page_one_deviations
 from validation.check.curves import Channel, Curves
 from validation.check.motion_curves import MotionCurves
 from validation.prediction.motion import Motion, Prediction, measured, predicted
@@ -35,6 +43,8 @@ KINDS = {
     "multibody": "record of the multibody model",
     "teeth": "teeth of its own (class 6)",
 }
+#: Kinds of runs that judge the next test, and whether the model may be off.
+PROMISES = {"promise": True, "promise-exact": False}
 #: Results of page 1 that are judged.
 RESULTS = ("dte_peak_to_peak", "dynamic_factor", "tooth_load", "bearing_rms")
 #: Speeds of the two runs and of page 1 [rpm]; noise over the peak to peak; samples in a mesh cycle; cycles.
@@ -77,26 +87,37 @@ def truth_of(kind: str, number: int) -> tuple[GearPair, GearPair]:
     return drawn, drawn
 
 
-def motion_of(truth: GearPair, kind: str, rpm: float) -> Prediction:
-    """The motion of the truth at a speed."""
-    at = truth.with_({"operating.pinion_speed": rpm})
+def motion_of(truth: GearPair, kind: str, rpm: float, torque: float | None = None) -> Prediction:
+    """The motion of the truth at a speed, and at a torque [N m]."""
+    load = {} if torque is None else {"operating.pinion_torque": torque}
+    at = truth.with_({"operating.pinion_speed": rpm} | load)
     if kind == "multibody":
         return measured(at, multibody.steady_state(at, samples_per_cycle=256, rtol=1e-7), Motion.SECOND)
     return predicted(at)
 
 
-def record_of(truth: GearPair, kind: str, rpm: float, seed: int) -> Curves:
-    """A run that records the transmission error with white noise."""
-    motion = motion_of(truth, kind, rpm)
+def record_of(
+    truth: GearPair,
+    kind: str,
+    rpm: float,
+    seed: int,
+    quantities: Sequence[str] = ("dte",),
+    torque: float | None = None,
+) -> Curves:
+    """A run that records quantities with white noise, the transmission error where none are named."""
+    motion = motion_of(truth, kind, rpm, torque)
     curves = MotionCurves(motion.pair, motion.cycle, motion.mesh_cycles, truth.pinion.teeth)
     u = np.arange(max(CYCLES, motion.mesh_cycles) * PER_CYCLE) / PER_CYCLE
-    values = curves.at("dte", u + 0.37)
     random = np.random.default_rng([seed, int(rpm)])
-    noise = NOISE * np.ptp(values) * random.standard_normal(u.size)
+    channels = []
+    for quantity in quantities:
+        values = curves.at(quantity, u + 0.37)
+        noise = NOISE * np.ptp(values) * random.standard_normal(u.size)
+        channels.append(Channel(quantity, quantity, values + noise))
     operating = motion.pair.operating
     return Curves(
-        f"run at {rpm:g} rpm", "time", u * motion.pair.geometry.mesh_period,
-        (Channel("dte", "dte", values + noise),), role="measurement",
+        f"run at {rpm:g} rpm and {operating.pinion_torque:g} N m", "time",
+        u * motion.pair.geometry.mesh_period, tuple(channels), role="measurement",
         pinion_speed=operating.pinion_speed, pinion_torque=operating.pinion_torque,
     )  # fmt: skip
 
@@ -125,30 +146,53 @@ def judged(kind: str, number: int) -> dict[str, Any]:
     return row
 
 
+def promised(kind: str, number: int) -> dict[str, Any]:
+    """What the next test of one machine promises to leave, and what it leaves when it is run."""
+    truth, _ = truth_of("same", number)
+    records = [record_of(truth, "same", rpm, number) for rpm in SPEEDS]
+    before = calibrate(calibrated_pair(), records, PROMISES[kind], progress=False)
+    test = before.next_tests[0]
+    run = record_of(truth, "same", test.speed_rpm, 1000 + number, test.channels, test.torque)
+    after = calibrate(calibrated_pair(), [*records, run], PROMISES[kind], progress=False)
+    deviations = [page_one_deviations(one) for one in (before, after)]
+    ranges = [
+        [np.ptp(one.results[f"{name}_percentile"].to_numpy()) for name in test.left]
+        for one in (before, after)
+    ]
+    return {
+        "kind": kind,
+        "number": number,
+        "test": test.words.partition(" leaves")[0],
+        "promised": test.left,
+        "left": dict(zip(test.left, (deviations[1] / deviations[0]).tolist(), strict=True)),
+        "left_of_range": dict(zip(test.left, np.divide(ranges[1], ranges[0]).tolist(), strict=True)),
+    }
+
+
 def main() -> int:
     """Judge machines until the processor time is over, and add them to those that are stored."""
     parser = argparse.ArgumentParser(prog="python -m tests.evidence.calibration", description=__doc__)
     parser.add_argument("-o", "--output", type=Path, default=Path("docs/verification/calibration.json"))
     parser.add_argument("--machines", type=int, default=10, help="machines of each kind")
-    parser.add_argument("--kinds", nargs="+", choices=tuple(KINDS), default=list(KINDS))
+    parser.add_argument("--kinds", nargs="+", choices=(*KINDS, *PROMISES), default=[*KINDS, *PROMISES])
     arguments = parser.parse_args()
-    stored: list[dict[str, Any]] = []
+    stored: dict[str, Any] = {"noise": NOISE, "promises": [], "machines": []}
     if arguments.output.is_file():
-        stored = json.loads(arguments.output.read_text(encoding="utf-8"))["machines"]
-    done = {(row["kind"], row["number"]) for row in stored}
+        stored |= json.loads(arguments.output.read_text(encoding="utf-8"))
+    done = {(row["kind"], row["number"]) for row in [*stored["machines"], *stored["promises"]]}
     for number in range(arguments.machines):
         for kind in arguments.kinds:
             if (kind, number) in done:
                 continue
+            rows = stored["promises" if kind in PROMISES else "machines"]
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
                 try:
-                    stored.append(judged(kind, number))
+                    rows.append((promised if kind in PROMISES else judged)(kind, number))
                 except SpurcheckError as error:  # a truth without a motion is no machine
-                    stored.append({"kind": kind, "number": number, "left_out": str(error)[:300]})
-            text = json.dumps({"noise": NOISE, "machines": stored}, indent=1)
-            arguments.output.write_text(text + "\n", encoding="utf-8")
-            print(kind, number, stored[-1].get("with", stored[-1]).get("holds", ""), flush=True)
+                    rows.append({"kind": kind, "number": number, "left_out": str(error)[:300]})
+            arguments.output.write_text(json.dumps(stored, indent=1) + "\n", encoding="utf-8")
+            print(kind, number, rows[-1].get("with", rows[-1]).get("holds", rows[-1]), flush=True)
     return 0
 
 

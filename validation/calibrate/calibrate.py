@@ -30,12 +30,14 @@ from validation.calibrate.discrepancy import (
     discrepancy_covariance,
     noise_covariance,
     prior_of_levels,
+    shown_results,
 )
 from validation.calibrate.fit import STARTS, Fit, Minimum, starts
 from validation.calibrate.forms import Form, forms_of, machine, numeric_inputs, pair_of
+from validation.calibrate.machines import Machines
 from validation.calibrate.measured import Measured, measured_records
 from validation.calibrate.mixture import Component, by_levels, component, draws, mixture, pareto_shape
-from validation.calibrate.posterior import RELIABLE, Machines, Posterior
+from validation.calibrate.posterior import RELIABLE, Posterior
 from validation.prediction.motion import predicted
 from validation.prediction.uncertain_input import Input
 
@@ -344,6 +346,7 @@ def _machines(
         z=z[kept][order],
         components=[components[places[kept[j]]] for j in order],
         numbers=[numbers[j] for j in order],
+        shown=shown_results(data),
         shape=shape,
         seed=seed,
     )

@@ -29,6 +29,12 @@ LEVELS = (0.0, 0.02, 0.05, 0.10, 0.20)
 DEVIATION = 0.05
 #: Share of the variance that is common to all records.
 _COMMON = 0.5
+#: Result of page 1 -> the quantities whose records show it.
+_SHOWN_BY = {
+    "dte_peak_to_peak": {"dte"},
+    "dynamic_factor": {"mesh_force"},
+    "bearing_rms": {"bearing_force_x_p", "bearing_force_y_p"},
+}
 
 
 def prior_of_levels() -> FloatArray:
@@ -36,6 +42,28 @@ def prior_of_levels() -> FloatArray:
     middles = 0.5 * (np.array(LEVELS[1:]) + np.array(LEVELS[:-1]))
     below = np.array([0.0, *(erf(one / (DEVIATION * np.sqrt(2.0))) for one in middles), 1.0])
     return np.diff(below)
+
+
+def shown_results(records: Sequence[Measured]) -> frozenset[str]:
+    """Return the results of page 1 whose quantities are channels of the records."""
+    recorded = {channel.key[0] for one in records for channel in one.channels}
+    return frozenset(name for name, needed in _SHOWN_BY.items() if needed <= recorded)
+
+
+def variance_of_error(level: float, shown: bool) -> float:
+    """Return the variance of the error of a result by the model, as a share of the result.
+
+    ``shown``: a record shows the result, and the error has the level of the discrepancy. Else the level is at
+    least that of the half-normal prior s |N|, N standard normal: E[max(level, s |N|)^2], with a = level/s
+
+        level^2 erf(a/sqrt 2) + s^2 (1 - erf(a/sqrt 2) + a sqrt(2/pi) exp(-a^2/2)).
+    """
+    if shown:
+        return level**2
+    a = level / DEVIATION
+    below = erf(a / np.sqrt(2.0))
+    tail = 1.0 - below + a * np.sqrt(2.0 / np.pi) * np.exp(-0.5 * a**2)
+    return float(level**2 * below + DEVIATION**2 * tail)
 
 
 def noise_covariance(records: Sequence[Measured]) -> FloatArray:

@@ -1,34 +1,38 @@
 """Which test pays next: candidates ranked by the width that they would leave of the results of page 1.
 
-A candidate is a run at one speed and torque with one or two channels. About each probable minimum the data
-are linear, so the posterior after the candidate is known before the run: its covariance does not depend on
-what will be measured. Minima that the candidate would tell apart count with the overlap of their data.
+A candidate is a run at one speed and torque. Some of the machines that the records
+leave take the place of the truth in turn. The records and the candidate are calibrated as if they were the
+motion of this machine, with the slopes at the machine in the place of a search. The variance that is left
+has all levels of the discrepancy and the forms that are not told apart. Its logarithm is averaged over the
+truths.
 
-Source: Chaloner and Verdinelli, Statist. Sci. 10 (1995) 273.
+Source: Chaloner and Verdinelli, Statist. Sci. 10 (1995) 273, section 2: the expected loss of an experiment.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
-from scipy.linalg import cholesky, solve_triangular
+from scipy.linalg import block_diag, cholesky
 
 from lumped.errors import SpurcheckError
 from lumped.fields.units import to_stated
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 from validation.calibrate.discrepancy import (
-    DEVIATION,
     discrepancy_covariance,
     noise_covariance,
+    shown_results,
+    variance_of_error,
 )
-from validation.calibrate.fit import SAMPLES, Fit, Motions, whitened
-from validation.calibrate.forms import beside, level_score, machine, pair_of
+from validation.calibrate.fit import SAMPLES, Fit, Minimum, Motions, at_record
+from validation.calibrate.forms import Form, beside, level_score, machine, pair_of
+from validation.calibrate.machines import Machines
 from validation.calibrate.measured import ORDERS, Measured, MeasuredChannel
-from validation.calibrate.mixture import Component
+from validation.calibrate.mixture import Component, by_levels, component, mixture
 from validation.check.curves import Channel
 from validation.check.record.compare import mean_motion
 from validation.prediction.motion import predicted
@@ -37,12 +41,12 @@ from validation.signals.complex_orders import ComplexOrders
 
 #: Results whose width counts.
 RESULTS = ("dte_peak_to_peak", "dynamic_factor", "bearing_rms")
-#: Candidates: speeds and torques over those of the pair, and channels.
+#: Candidates: speeds and torques over those of the pair, and channels. The longest list has all channels.
 _SPEEDS = (0.5, 1.0, 1.5, 2.0)
 _TORQUES = (1.0, 0.5)
-_CHANNELS = (("dte",), ("dte", "bearing_force_x_p"))
-#: Minima that count.
-_MINIMA = 3
+_CHANNELS = (("dte",), ("dte", "bearing_force_x_p", "bearing_force_y_p"))
+#: Machines that take the place of the truth.
+_TRUTHS = 5
 
 
 class Calibrated(Protocol):
@@ -63,6 +67,10 @@ class Calibrated(Protocol):
     @property
     def components(self) -> tuple[Component, ...]:
         """The mixture."""
+
+    @property
+    def machines(self) -> Machines:
+        """The possible machines that the records leave."""
 
     @property
     def discrepancy(self) -> bool:
@@ -93,32 +101,32 @@ class Candidate:
     @property
     def words(self) -> str:
         """What to record, and what the test would leave of the width of each result."""
-        names = {"dte": "transmission error", "bearing_force_x_p": "force on the pinion bearing"}
         results = {
             "dte_peak_to_peak": "transmission error",
             "dynamic_factor": "dynamic factor",
             "bearing_rms": "bearing force",
         }
-        what = " and ".join(names.get(one, one) for one in self.channels)
+        forces = " and both forces on the pinion bearing" if len(self.channels) > 1 else ""
         left = ", ".join(f"{results[name]} {100.0 * share:.0f} %" for name, share in self.left.items())
-        return f"{what} at {self.speed_rpm:.4g} rpm and {self.torque:.3g} N m leaves: {left}"
+        return (
+            f"transmission error{forces} at {self.speed_rpm:.4g} rpm and {self.torque:.3g} N m leaves: {left}"
+        )
 
 
 @dataclass(frozen=True, eq=False)
-class _Local:
-    """One minimum: results and data of all candidates with their slopes.
+class _Truth:
+    """A machine in the place of the truth.
 
     Attributes
     ----------
-    one : the most probable component of the minimum
-    weight : probability of all components of the minimum
-    level : their mean level of the discrepancy
+    form, z : the machine
+    by_records : data of the records, as a minimum of their fit
     results, slopes : (result,) and (result, input) at the operating point
     """
 
-    one: Component
-    weight: float
-    level: float
+    form: Form
+    z: FloatArray
+    by_records: Minimum
     results: FloatArray
     slopes: FloatArray
 
@@ -133,124 +141,191 @@ def next_tests(posterior: Calibrated) -> tuple[Candidate, ...]:
     Returns
     -------
     candidates : speeds of half to twice the speed of the pair within its range, full and half torque, the
-        transmission error alone or with the force on the pinion bearing; noise as in the records. The share
-        that a test leaves is a standard deviation over all minima, with the discrepancy of the model
+        transmission error alone or with both forces on the pinion bearing; noise as in the records. The share
+        that a test leaves is an expected standard deviation over that of page 1, with the discrepancy of the
+        model
     """
-    locals_ = [_local(posterior, group) for group in _minima(posterior.components)[:_MINIMA]]
+    truths = _truths(posterior)
     operating = posterior.prior.operating
     low, high = operating.speed_range or (0.0, np.inf)
-    found = []
+    found: list[Candidate] = []
     for factor in _SPEEDS:
         speed = factor * operating.pinion_speed
         if not low <= speed <= high:
             continue
         for share in _TORQUES:
-            torque = share * operating.pinion_torque
-            for channels in _CHANNELS:
-                left = _left(posterior, locals_, speed, torque, channels)
-                if left is not None:
-                    rpm = float(to_stated(speed, "rpm"))
-                    found.append(Candidate(rpm, float(torque), channels, left))
+            found += _at(posterior, truths, speed, share * operating.pinion_torque)
     return tuple(sorted(found, key=lambda one: one.score))
 
 
-def _minima(components: Sequence[Component]) -> list[list[Component]]:
-    """Components of each minimum and form, the most probable minimum first."""
-    groups: dict[tuple[object, int], list[Component]] = {}
+def _truths(posterior: Calibrated) -> list[_Truth]:
+    """Machines in the place of the truth: evenly spaced in the order of their first result."""
+    machines = posterior.machines
+    sizes = [one[RESULTS[0]] for one in machines.numbers[1:]]
+    places = 1 + np.argsort(sizes, kind="stable")
+    count = min(_TRUTHS, places.size)
+    chosen = places[((np.arange(count) + 0.5) * places.size / count).astype(int)]
+    return [_truth(posterior, int(j)) for j in chosen]
+
+
+def _truth(posterior: Calibrated, number: int) -> _Truth:
+    """A machine with the data of the records and the results of page 1, and their slopes."""
+    form, z = posterior.machines.components[number].form, posterior.machines.z[number]
+    pair = pair_of(posterior.prior, form)
+    by_records = _about(Fit(pair, posterior.inputs, posterior.records, np.eye(0)), z)
+    assert by_records is not None  # the machines of a posterior have motions at all records
+    results = np.array([posterior.machines.numbers[number][name] for name in RESULTS])
+    slopes = np.zeros((results.size, z.size))
+    for j, one in enumerate(posterior.inputs):
+        moved = z.copy()
+        moved[j] = beside(one, z[j])
+        step = level_score(one, moved[j]) - level_score(one, z[j])
+        try:
+            numbers = predicted(machine(pair, posterior.inputs, moved)).numbers
+        except SpurcheckError:  # no motion there: no slope, as in the fit
+            continue
+        slopes[:, j] = (np.array([numbers[name] for name in RESULTS]) - results) / step
+    return _Truth(form, z, by_records, results, slopes)
+
+
+def _about(fit: Fit, z: FloatArray) -> Minimum | None:
+    """Data at a machine and their slopes, as a minimum of the fit. None: no motion."""
+    motions = fit.motions(z)
+    return None if motions is None else Minimum(z, motions, fit.slopes(z, motions), np.nan)
+
+
+def _at(posterior: Calibrated, truths: Sequence[_Truth], speed: float, torque: float) -> Iterator[Candidate]:
+    """Candidates of one operating point; none where a machine has no motion there."""
+    record = _record(posterior, speed, torque)
+    if record is None:
+        return
+    minima = []
+    for truth in truths:
+        pair = pair_of(posterior.prior, truth.form)
+        new = _about(Fit(pair, posterior.inputs, [record], np.eye(0)), truth.z)
+        if new is None:
+            return
+        minima.append(_joined(truth.by_records, new))
+    before = page_one_deviations(posterior)
+    for channels in _CHANNELS:
+        part = replace(record, channels=record.channels[: len(channels)])
+        after = _deviations_after(posterior, truths, minima, [*posterior.records, part])
+        share = np.minimum(after / np.maximum(before, 1e-300), 1.0)
+        left = dict(zip(RESULTS, map(float, share), strict=True))
+        yield Candidate(float(to_stated(speed, "rpm")), float(torque), channels, left)
+
+
+def _joined(old: Minimum, new: Minimum) -> Minimum:
+    """Data of the records, then of the candidate; each has shifts of its own."""
+    shifts = np.asarray(block_diag(old.motions.by_shift, new.motions.by_shift))
+    values = np.concatenate([old.motions.values, new.motions.values])
+    return Minimum(old.z, Motions(values, shifts), np.vstack([old.slopes, new.slopes]), np.nan)
+
+
+def page_one_deviations(posterior: Calibrated) -> FloatArray:
+    """(result,) standard deviation of page 1 over the machines, with the error of the model."""
+    machines = posterior.machines
+    results = np.array([[one[name] for name in RESULTS] for one in machines.numbers[1:]])
+    variance = results.var(axis=0)
+    if posterior.discrepancy:
+        for level, share in _levels(posterior).items():
+            errors = [_errors(row, level, machines.shown) for row in results]
+            variance = variance + share * np.mean(errors, axis=0)
+    return np.asarray(np.sqrt(variance))
+
+
+def _levels(posterior: Calibrated) -> dict[float, float]:
+    """Level of the discrepancy -> its probability."""
+    levels: dict[float, float] = {}
+    for one in posterior.components:
+        levels[one.level] = levels.get(one.level, 0.0) + one.weight
+    return levels
+
+
+def _deviations_after(
+    posterior: Calibrated, truths: Sequence[_Truth], minima: Sequence[Minimum], records: Sequence[Measured]
+) -> FloatArray:
+    """(result,) expected standard deviation of the results with the candidate as the last record.
+
+    The geometric mean over the truths: near a resonance one machine may leave ten times as much as another.
+    """
+    levels = _levels(posterior)
+    noise, of_model = noise_covariance(records), discrepancy_covariance(records)
+    size = noise.shape[0]
+    factors = {level: cholesky(noise + level**2 * of_model, lower=True) for level in levels}
+    known = [_rows(one, size) for one in minima]
+    shown = shown_results(records)
+    variances = []
+    for truth, place in zip(truths, known, strict=True):
+        data = place.motions.values
+        found = [
+            one
+            for level, prior in levels.items()
+            for one in _explanations(truth, truths, known, level, prior, factors[level], data)
+        ]
+        variances.append(_variance(mixture(by_levels(found, levels, size)), truths, known, posterior, shown))
+    return np.asarray(np.exp(0.5 * np.mean(np.log(np.maximum(variances, 1e-300)), axis=0)))
+
+
+def _rows(one: Minimum, count: int) -> Minimum:
+    """The first data of a minimum: fewer channels of the candidate."""
+    motions = Motions(one.motions.values[:count], one.motions.by_shift[:count])
+    return Minimum(one.z, motions, one.slopes[:count], np.nan)
+
+
+def _explanations(
+    truth: _Truth,
+    truths: Sequence[_Truth],
+    minima: Sequence[Minimum],
+    level: float,
+    prior: float,
+    factor: FloatArray,
+    data: FloatArray,
+) -> list[Component]:
+    """What explains the motion of a truth: its own minimum, and the best one of every other form."""
+    best: dict[Form, Component] = {}
+    for other, minimum in zip(truths, minima, strict=True):
+        if other.form == truth.form and other is not truth:
+            continue
+        one = component(other.form, minimum, level, other.form.prior * prior, factor, data)
+        if other.form not in best or one.weight > best[other.form].weight:
+            best[other.form] = one
+    return list(best.values())
+
+
+def _variance(
+    components: Sequence[Component],
+    truths: Sequence[_Truth],
+    minima: Sequence[Minimum],
+    posterior: Calibrated,
+    shown: Collection[str],
+) -> FloatArray:
+    """(result,) variance of the results in a mixture, with the error of the model."""
+    weights, means, inside = [], [], []
     for one in components:
-        groups.setdefault((one.form.mesh, id(one.minimum)), []).append(one)
-    return sorted(groups.values(), key=lambda group: -sum(one.weight for one in group))
+        truth = next(of for of, place in zip(truths, minima, strict=True) if place is one.minimum)
+        mean = truth.results + truth.slopes @ (one.z - truth.z)
+        spread = np.einsum("ri,ij,rj->r", truth.slopes, one.covariance, truth.slopes)
+        weights.append(one.weight)
+        means.append(mean)
+        inside.append(spread + (_errors(mean, one.level, shown) if posterior.discrepancy else 0.0))
+    share = np.array(weights)
+    apart = np.array(means) - share @ np.array(means)
+    return np.asarray(share @ (np.array(inside) + apart**2))
 
 
-def _local(posterior: Calibrated, group: Sequence[Component]) -> _Local:
-    """Results of page 1 at a minimum, and their slopes."""
-    one = group[0]
-    pair = pair_of(posterior.prior, one.form)
-
-    def results(z: FloatArray) -> FloatArray:
-        numbers = predicted(machine(pair, posterior.inputs, z)).numbers
-        return np.array([numbers[name] for name in RESULTS])
-
-    nominal = results(one.z)
-    slopes = np.zeros((nominal.size, one.z.size))
-    for j, of_input in enumerate(posterior.inputs):
-        moved = one.z.copy()
-        moved[j] = beside(of_input, one.z[j])
-        step = level_score(of_input, moved[j]) - level_score(of_input, one.z[j])
-        slopes[:, j] = (results(moved) - nominal) / step
-    weight = sum(row.weight for row in group)
-    level = sum(row.weight * row.level for row in group) / weight
-    return _Local(one, weight, level, nominal, slopes)
+def _errors(results: FloatArray, level: float, shown: Collection[str]) -> FloatArray:
+    """(result,) variance by the error of the model, which acts on the dynamic factor less 1."""
+    sizes = results - np.array([name == "dynamic_factor" for name in RESULTS])
+    variances = [variance_of_error(level, name in shown) for name in RESULTS]
+    return np.asarray(np.array(variances) * sizes**2)
 
 
-def _left(
-    posterior: Calibrated, minima: Sequence[_Local], speed: float, torque: float, channels: tuple[str, ...]
-) -> dict[str, float] | None:
-    """Share of the standard deviation of each result that a candidate leaves. None: no motion there."""
-    before = np.zeros((len(minima), len(RESULTS)))
-    after = np.zeros_like(before)
-    data = []
-    for row, local in enumerate(minima):
-        pair = pair_of(posterior.prior, local.one.form)
-        record = _record(posterior, machine(pair, posterior.inputs, local.one.z), speed, torque, channels)
-        if record is None:
-            return None
-        both = [*posterior.records, record]
-        count = sum(2 * one.orders.orders.size for one in record.channels)
-        new = Fit(pair, posterior.inputs, [record], np.eye(count))
-        motions = new.motions(local.one.z)
-        if motions is None:
-            return None
-        covariance = noise_covariance(both) + local.level**2 * discrepancy_covariance(both)
-        slopes = np.vstack([local.one.minimum.slopes, new.slopes(local.one.z, motions)])
-        known = np.zeros(slopes.shape[0])
-        shifts = np.zeros((slopes.shape[0], len(both)))
-        old = slopes.shape[0] - count
-        shifts[:old, : len(both) - 1] = local.one.minimum.motions.by_shift
-        shifts[old:, -1] = motions.by_shift[:, 0]
-        white = whitened(cholesky(covariance, lower=True), known, Motions(known, shifts), slopes)
-        information = white.slopes.T @ white.slopes + np.eye(slopes.shape[1])
-        spread = np.asarray(np.linalg.inv(information), dtype=np.float64)
-        own = _own_errors(local, posterior.discrepancy)
-        shown = _own_errors(local, posterior.discrepancy, shown="bearing_force_x_p" in channels)
-        before[row] = _variance(local.slopes, local.one.covariance) + own
-        after[row] = _variance(local.slopes, spread) + shown
-        data.append((motions.values, covariance[old:, old:]))
-    weights = np.array([one.weight for one in minima])
-    weights = weights / weights.sum()
-    results = np.array([one.results for one in minima])
-    total_before = weights @ before
-    total_after = weights @ after
-    for i in range(len(minima)):
-        for j in range(i):
-            apart = weights[i] * weights[j] * (results[i] - results[j]) ** 2
-            factor = cholesky(0.5 * (data[i][1] + data[j][1]), lower=True)
-            distance = solve_triangular(factor, data[i][0] - data[j][0], lower=True)
-            total_before = total_before + apart
-            total_after = total_after + apart * np.exp(-0.125 * float(distance @ distance))
-    share = np.sqrt(np.minimum(total_after / np.maximum(total_before, 1e-300), 1.0))
-    return dict(zip(RESULTS, map(float, share), strict=True))
+def _record(posterior: Calibrated, speed: float, torque: float) -> Measured | None:
+    """A record that is not there yet: the motion of the best machine, with the noise of the records.
 
-
-def _variance(slopes: FloatArray, covariance: FloatArray) -> FloatArray:
-    """(result,) variance of the results by the inputs."""
-    return np.asarray(np.einsum("ri,ij,rj->r", slopes, covariance, slopes))
-
-
-def _own_errors(local: _Local, discrepancy: bool, *, shown: bool = False) -> FloatArray:
-    """(result,) variance by the error of the model; ``shown``: the bearing force is among the channels."""
-    if not discrepancy:
-        return np.zeros(len(RESULTS))
-    unknown = np.hypot(local.level, DEVIATION)
-    sizes = np.array([local.results[0], local.results[1] - 1.0, local.results[2]])
-    shares = np.array([local.level, unknown, local.level if shown else unknown])
-    return np.asarray((shares * sizes) ** 2)
-
-
-def _record(
-    posterior: Calibrated, made: GearPair, speed: float, torque: float, channels: tuple[str, ...]
-) -> Measured | None:
-    """A record that is not there yet: the motion of a machine, with the noise of the records."""
+    None: no motion. It has all channels of the candidates.
+    """
     shares = [
         np.sqrt(float(np.trace(one.orders.covariance)) / (2.0 * one.orders.orders.size)) / one.scale
         for record in posterior.records
@@ -261,17 +336,22 @@ def _record(
         "operating.pinion_speed": f"{float(speed)!r} rad/s",
         "operating.pinion_torque": f"{float(torque)!r} N*m",
     }
+    machines = posterior.machines
     at = posterior.prior.with_(operating).healthy
+    empty = Measured("candidate", at, (), None, None)
     try:
-        motion = mean_motion(predicted(made.with_(operating), SAMPLES))
+        best = machine(pair_of(posterior.prior, machines.components[0].form), posterior.inputs, machines.z[0])
+        motion = mean_motion(predicted(at_record(best, posterior.prior, empty), SAMPLES))
     except SpurcheckError:
         return None
     measured = []
-    for name in channels:
+    for name in _CHANNELS[-1]:
         orders = motion.orders(name, ORDERS)
         count = orders.orders.size
         scale = float(orders.amplitudes.max())
+        if scale <= 0.0:  # without friction nothing moves off the line of action
+            continue
         covariance = (noise * scale) ** 2 * np.eye(2 * count)
         values = ComplexOrders(orders.orders, orders.values, orders.mean, covariance)
         measured.append(MeasuredChannel(Channel(name, name, np.zeros(8)), values, scale))
-    return Measured("candidate", at, tuple(measured), None, None)
+    return replace(empty, channels=tuple(measured))

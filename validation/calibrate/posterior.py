@@ -6,7 +6,6 @@ Source: Kennedy and O'Hagan, J. R. Statist. Soc. B 63 (2001) 425, section 4.
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
@@ -20,14 +19,13 @@ from lumped.labelling import labelled_dataset, provenance
 from lumped.model.periodic_system import supports_of
 from lumped.schema.pair import GearPair, field_values, validated
 from lumped.schema.posterior import ERROR
-from lumped.typing import FloatArray
-from validation.calibrate.discrepancy import DEVIATION
 from validation.calibrate.forms import pair_of
+from validation.calibrate.machines import Machines
 from validation.calibrate.measured import Measured
 from validation.calibrate.mixture import Component, moments
 from validation.check.record.channel import noise_factor
 from validation.files.formatting import quantity as printed
-from validation.prediction.machines import ERRORS, with_errors
+from validation.prediction.machines import with_errors
 from validation.prediction.motion import QUANTITIES
 from validation.prediction.uncertain_input import Input
 from validation.prediction.uncertainty import PERCENTILES
@@ -49,43 +47,6 @@ RELIABLE = 0.7
 _LIST = re.compile(r"\[\n((?:    [^\n]*,\n)+)\]")
 #: Digits of the values in a file.
 _DIGITS = 7
-
-
-@dataclass(frozen=True, eq=False)
-class Machines:
-    """Possible machines that the records leave. The first one is the best fit.
-
-    Attributes
-    ----------
-    z : (machine, input) normal scores
-    components : component of the mixture from which each machine was drawn
-    numbers : page-1 numbers of each machine, without the error of the model
-    shape : shape of the tail of the importance weights; above 0.7 the machines are those of the linear data
-    seed : seed of the draws
-    """
-
-    z: FloatArray
-    components: Sequence[Component]
-    numbers: Sequence[dict[str, float]]
-    shape: float
-    seed: int
-
-    @cached_property
-    def errors(self) -> dict[str, FloatArray]:
-        """Result -> (machine,) error of the model, as a share of the result; 0 of the best fit.
-
-        The error of each machine is normal with the level of its component, and for results that the records
-        do not show at least with a level of the half-normal prior: they say nothing about it.
-        """
-        random = np.random.default_rng(self.seed + 1)
-        levels = np.array([one.level for one in self.components])
-        errors = {}
-        for name in ERRORS:
-            prior = DEVIATION * np.abs(random.standard_normal(levels.size))
-            size = levels if name == "dte_peak_to_peak" else np.maximum(levels, prior)
-            errors[name] = size * random.standard_normal(levels.size)
-            errors[name][0] = 0.0
-        return errors
 
 
 class Unexplained(NamedTuple):

@@ -26,6 +26,7 @@ from lumped.schema.pair import GearPair
 from lumped.typing import ProgressRequest
 from validation.check.curve_orders import drift
 from validation.check.curves import Curves, Role, ValuesOverSpeed
+from validation.check.digits import few_digits
 from validation.check.ladder import Explanation, Ladder, climb
 from validation.check.mesh_frequency import SAME
 from validation.check.misfit import LIMIT, Misfit
@@ -103,7 +104,8 @@ class Check(DisplayedResult):
     over_speed : values over speed beside ours; None: none were given
     second : misfit of the curves and the motion of the multibody model; None: it has no motion there
     discrepancy : misfit of the multibody model and our motion, at the channels of the curves; NaN: no motion
-    ladder : search for explanations; None: the motion agrees, or no explanations were asked for
+    ladder : search for explanations; None: the motion agrees, or no explanations were asked for. A motion
+        that agrees has one where its samples scatter
     remarks : sentences on the curves: what was assumed, what was not compared
     """
 
@@ -215,7 +217,9 @@ class Check(DisplayedResult):
             sentences.append(motion_failure(self.nearer, self.limit))
         elif self.failed is Rung.OVER_SPEED and self.over_speed is not None:
             sentences.append(speed_failure(self.over_speed))
-        if self.ladder is not None and (self.ladder.steps or self.failed is Rung.MOTION):
+        if self.ladder is not None and self.agrees:
+            sentences += [f"{step.sentence}." for step in self.ladder.steps]
+        elif self.ladder is not None and (self.ladder.steps or self.failed is Rung.MOTION):
             sentences.append(ladder_words(self.ladder, self.limit))
         return " ".join(sentences)
 
@@ -370,6 +374,9 @@ def check(
         remarks=(*source.remarks, *_remarks(problem), *_remark_on_no_order(problem, allowed), *more),
     )
     agree = result.failed is None and all(row.total <= allowed for row in result.nearer.channels)
+    if explain and agree and (steps := few_digits(problem, allowed)):
+        scatter = Ladder(problem.misfit.value, steps, motion, runs=0, complete=True)
+        return replace(result, ladder=scatter)
     if not explain or agree:
         return result
     return replace(result, ladder=climb(problem, limit=allowed, budget=seconds))

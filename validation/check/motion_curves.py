@@ -30,6 +30,9 @@ from validation.check.quantities import (
 )
 from validation.signals.complex_orders import ComplexOrders, orders_of_period
 
+#: Samples by which a path of contact must end elsewhere to be another one.
+_OTHER_END = 2.0
+
 
 class _Life(NamedTuple):
     """A quantity of a tooth pair over the mesh cycles ``age`` since the pair was at A."""
@@ -96,10 +99,27 @@ class MotionCurves:
         if quantity.startswith("resultant"):
             across = self.motion[f"bearing_force_y_{quantity[-1]}"].to_numpy()
             return np.asarray(np.hypot(values, across))
+        if quantity == "friction without signs":
+            return np.asarray(np.abs(values).sum(axis=0))
+        if " in place " in quantity:
+            place = int(quantity[-1])
+            return np.asarray(values[place] if place < len(values) else np.zeros(values.shape[1]))
+        if quantity in ("whole load of the mesh", "share of the static load", "load times its share"):
+            return self._by_share(quantity, values)
         if quantity == "equal share of the load":
             touches = self.motion["contact"].to_numpy() > 0
             return np.asarray(touches * values.sum(axis=0) / np.maximum(touches.sum(axis=0), 1))
         return values
+
+    def _by_share(self, quantity: str, loads: FloatArray) -> FloatArray:
+        """What the load of a tooth pair is mistaken for, by its share of the mesh force (pairs, n) [N]."""
+        touches = self.motion["contact"].to_numpy() > 0
+        total = loads.sum(axis=0)
+        if quantity == "whole load of the mesh":
+            return np.asarray(touches * total)
+        share = touches * loads / np.where(total == 0.0, 1.0, total)
+        static = self.pair.operating.pinion_torque / self.pair.geometry.base_radius_pinion
+        return np.asarray(share * (static if quantity == "share of the static load" else loads))
 
     def mean_cycle(self) -> MotionCurves:
         """Return the motion averaged over the mesh cycles of its period."""
@@ -137,18 +157,30 @@ class MotionCurves:
     def life(self) -> tuple[float, float]:
         """First and last mesh cycle since A at which a tooth pair can carry load.
 
-        With loaded contact the life is longer than the path from A to D.
+        With loaded contact the life is longer than the path from A to D, and an altered path has other ends.
         """
+        return self._life_of_pair
+
+    @cached_property
+    def _life_of_pair(self) -> tuple[float, float]:
         if self.pair.mesh.contact == "loaded":
             return float(self.ahead.min()), float(self.ahead.max()) + 1.0
-        return 0.0, self.pair.geometry.contact_ratio
+        g = self.pair.geometry
+        touches = self.motion["contact"].to_numpy() > 0
+        if not touches.any():
+            return 0.0, g.contact_ratio
+        step = self.mesh_cycles / self.motion.sizes["time"]
+        cycles = (self.motion["position"].to_numpy()[touches] - g.L_XA) / g.base_pitch
+        first, last = float(cycles.min()), float(cycles.max()) + step
+        first = first if abs(first) > _OTHER_END * step else 0.0
+        return first, last if abs(last - g.contact_ratio) > _OTHER_END * step else g.contact_ratio
 
     def at(self, quantity: str, cycles: ArrayLike, label: str | None = None) -> FloatArray:
         """Return a quantity [SI] at mesh cycles; ``label``: tooth pair of a quantity of tooth pairs.
 
         Between samples the value is interpolated linearly.
         """
-        if label is None:
+        if label is None or " in place " in quantity:
             values = self.samples(quantity)
             grid = np.arange(values.size) * (self.mesh_cycles / values.size)
             within = np.mod(np.asarray(cycles, dtype=float), self.mesh_cycles)

@@ -168,16 +168,21 @@ class Problem:
         theirs: tuple[ChannelOrders, ...] | None = None,
         *,
         free_shift: bool = False,
+        near_coarse: bool = True,
     ) -> Misfit:
         """Return the misfit of channels (by default those of the curves) and another motion of ours.
 
-        ``free_shift`` says whether the shift is searched although the user states it.
+        ``free_shift`` says whether the shift is searched although the user states it, ``near_coarse`` whether
+        near the coarse one, which channels of tooth pairs need.
         """
+        channels_of_theirs = self.theirs if theirs is None else theirs
+        # Without a channel that shows a tooth pair from end to end the shift is that of the mesh cycle alone.
+        of_pairs = any(one.channel.tooth_pair for one in channels_of_theirs)
         misfit = misfit_of(
-            self.theirs if theirs is None else theirs,
+            channels_of_theirs,
             motion,
             shift=None if free_shift else self.given_shift,
-            near=self.coarse_shift,
+            near=self.coarse_shift if near_coarse and of_pairs else None,
             means=self.means,
         )
         return misfit if self._fit is None else self._sampled_alike(misfit, motion, self._fit)

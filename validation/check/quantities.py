@@ -87,6 +87,8 @@ GEARS = (("p", "pinion"), ("g", "gear"))
 LINES = (("x", "along the line of action"), ("y", "off the line of action"))
 #: Name -> quantity.
 QUANTITIES = {quantity.name: quantity for quantity in _quantities()}
+#: Most places of tooth pairs at one time.
+PLACES = 4
 #: What a transmission error or a force is mistaken for: name -> quantity. No channel bears these names.
 MISTAKEN = {
     quantity.name: quantity
@@ -118,6 +120,20 @@ MISTAKEN = {
                 f"bearing_force_x_{end}",
             )
             for end, gear in GEARS
+        ),
+        Quantity("friction without signs", "N", "sum of the sizes of all friction forces", "friction_force"),
+        *(
+            Quantity(name, "N", words, "normal_load", of_tooth_pair=True)
+            for name, words in (
+                ("whole load of the mesh", "mesh force, given for a tooth pair"),
+                ("share of the static load", "static load times the momentary share of a tooth pair"),
+                ("load times its share", "load of a tooth pair times its share of the mesh force"),
+            )
+        ),
+        *(
+            Quantity(f"{name} in place {place}", "N", f"{words} in a place of the mesh", name)
+            for name, words in (("normal_load", "load"), ("friction_force", "friction force"))
+            for place in range(PLACES)
         ),
         Quantity(
             "equal share of the load",

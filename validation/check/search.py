@@ -18,7 +18,8 @@ import time
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -28,7 +29,7 @@ from lumped.errors import SpurcheckError, typed_errors
 from lumped.model.revolution_motion import Origin
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
-from validation.check.curve_orders import ChannelOrders
+from validation.check.curve_orders import BIN, ChannelOrders
 from validation.check.explanations.cause import Cause, Choice, Kind, Variant
 from validation.check.explanations.misreadings import causes_of_channels
 from validation.check.explanations.physics import Physics, motion_of
@@ -240,16 +241,24 @@ class Search:
                 variant = step.of(variant)
         except SpurcheckError:
             return None
-        theirs = self._theirs(variant.reading)
         motion = self._motion(variant.pair, variant.physics)
-        if theirs is None or motion is None:
+        if motion is None:
             return None
-        try:
-            misfit = self.problem.misfit_with(motion, theirs, free_shift=variant.reading.free_shift)
-        except SpurcheckError:
-            return None
-        residual = residual_of(misfit)
-        return Trial(motion, misfit, residual) if np.isfinite(residual).all() else None
+        for problem in self._problems_of(motion):
+            reading = variant.reading
+            theirs = self._theirs(reading) if problem is self.problem else _read(problem, reading)
+            if theirs is None:
+                continue
+            try:
+                misfit = problem.misfit_with(
+                    motion, theirs, free_shift=reading.free_shift, near_coarse=not reading.places
+                )
+            except SpurcheckError:
+                continue
+            residual = residual_of(misfit)
+            if residual.size == self._size and np.isfinite(residual).all():
+                return Trial(motion, misfit, residual)
+        return None
 
     def _motion(self, pair: GearPair, physics: Physics) -> MotionCurves | None:
         """Motion of a variant, computed once."""
@@ -267,13 +276,30 @@ class Search:
                 self.motions[key] = None
         return self.motions[key]
 
+    def _problems_of(self, motion: MotionCurves) -> Iterator[Problem]:
+        """The problems by which a motion is judged, the best first.
+
+        Channels of tooth pairs begin where contact of the motion begins, if their orders are as many then.
+        """
+        if self.problem.coarse_shift is not None and self._begins_elsewhere(motion):
+            yield replace(self.problem, motion=motion)
+        yield self.problem
+
+    def _begins_elsewhere(self, motion: MotionCurves) -> bool:
+        """Whether contact of a motion begins at another place than ours."""
+        own = self.problem.motion
+        same_path = motion.pair.geometry.L_XA == own.pair.geometry.L_XA
+        return not same_path or abs(motion.life[0] - own.life[0]) > BIN
+
+    @cached_property
+    def _size(self) -> int:
+        """Size of a residual."""
+        return int(residual_of(self.problem.misfit).size)
+
     def _theirs(self, reading: Reading) -> tuple[ChannelOrders, ...] | None:
         """Their channels in a reading, computed once."""
         if reading not in self._readings:
-            try:
-                self._readings[reading] = read(self.problem, reading)
-            except SpurcheckError:
-                self._readings[reading] = None
+            self._readings[reading] = _read(self.problem, reading)
         return self._readings[reading]
 
     def floor(self, limit: float) -> float:
@@ -562,6 +588,14 @@ def _moved(steps: Sequence[Step], change: FloatArray) -> tuple[Step, ...]:
             step = step._replace(coordinate=coordinate)
         moved.append(step)
     return tuple(moved)
+
+
+def _read(problem: Problem, reading: Reading) -> tuple[ChannelOrders, ...] | None:
+    """Their channels in a reading; None: they cannot be read so."""
+    try:
+        return read(problem, reading)
+    except SpurcheckError:
+        return None
 
 
 def noise_of(problem: Problem) -> float:

@@ -10,6 +10,7 @@ binomial distribution of order statistics, David and Nagaraja, Order Statistics,
 
 from __future__ import annotations
 
+import functools
 import math
 import threading
 import warnings
@@ -454,12 +455,22 @@ def varied(pair: GearPair, changes: Sequence[tuple[Input, float]]) -> GearPair:
     fields: dict[str, object] = {}
     for one, share in changes:
         fields |= one.changes(share)
-    if fields.get("mesh.stiffness") == {"model": pair.mesh.stiffness.model}:
-        del fields["mesh.stiffness"]  # keeps the parameters that the file gives the model
+    model = fields.get("mesh.stiffness")
+    if isinstance(model, dict) and list(model) == ["model"]:
+        # The rest then changes numbers alone. The pair's own model keeps the parameters of the file.
+        del fields["mesh.stiffness"]
+        if model["model"] != pair.mesh.stiffness.model:
+            pair = _with_model(pair, model["model"])
     if "centre_distance" in fields:  # the gears stay as they are cut: another distance is another backlash
         for gear, shift in zip(("pinion", "gear"), pair.profile_shifts, strict=True):
             fields.setdefault(f"{gear}.profile_shift", shift)
     return pair.with_(fields) if fields else pair
+
+
+@functools.lru_cache(maxsize=16)
+def _with_model(pair: GearPair, name: str) -> GearPair:
+    """The pair with another model of the tooth stiffness."""
+    return pair.with_({"mesh.stiffness": {"model": name}})
 
 
 def _numbers_alone(pair: GearPair, one: Input) -> list[FloatArray | None]:

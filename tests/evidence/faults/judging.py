@@ -109,9 +109,11 @@ def _line(error: Exception) -> str:
 
 
 def _crossed(pair: GearPair) -> list[str]:
-    """Checks of the program that fail, and quantities in which the exact model differs."""
+    """Checks of the program that fail, and quantities in which the exact model differs, the loss as well."""
     check = crosscheck(pair, cycles=_CYCLES, samples_per_cycle=_SAMPLES, supports="springs")
     differing = [one.quantity for one in check.of("exact") if not one.within]
+    if check.loss is not None and not check.loss.within:
+        differing.append("loss")
     return [*(one.check for one in check.failures), *(f"differs: {name}" for name in differing)]
 
 

@@ -141,6 +141,7 @@ def _report(pair: GearPair) -> dict[str, FloatArray]:
         "natural frequencies": np.array([mode.natural_frequency for mode in modes(pair)]),
         "resonant speeds": np.array([mode.resonant_speed for mode in modes(pair)]),
     }
+    values["share of power lost, prediction"] = 1.0 - values["efficiency"]
     return values | {f"quasi-static {name}": np.array([value]) for name, value in static.items()}
 
 

@@ -20,4 +20,4 @@ def one_run(truth):
 @pytest.fixture(scope="session")
 def exact(truth):
     """The same without a discrepancy."""
-    return calibrate(rig_pair(), rig_record(truth), False, machines=16, progress=False)
+    return calibrate(rig_pair(), rig_record(truth), False, machines=64, progress=False)

@@ -8,6 +8,7 @@ from scipy.special import ndtr
 
 from tests.validation.calibrate.rig import RANGES, TRUTH, rig_pair, rig_record
 from validation.calibrate import calibrate
+from validation.calibrate.measured import measured_records
 from validation.calibrate.mixture import moments
 from validation.prediction.motion import predicted
 
@@ -136,15 +137,59 @@ def test_another_record_never_widens(truth, exact):
     assert _widths(both).min() < _widths(exact).min()
 
 
-def test_unit_and_form_of_a_record_do_not_matter(truth, exact):
+def test_form_of_a_record_does_not_matter(truth, exact):
     record = rig_record(truth)
-    channel = record.channels[0]
-    mapping = {
-        "name": "table", "role": "measurement", "pinion_speed": "1450 rpm", "pinion_torque": "80 N*m",
-        "time [ms]": 1e3 * record.places, "dte [um]": 1e6 * channel.values,
-    }  # fmt: skip
+    mapping = _mapping({"time [ms]": 1e3 * record.places, "dte [um]": 1e6 * record.channels[0].values})
     again = calibrate(rig_pair(), mapping, False, machines=16, progress=False)
     np.testing.assert_allclose(_widths(again), _widths(exact), rtol=1e-5)
+
+
+def _mapping(columns):
+    operating = {"pinion_speed": "1450 rpm", "pinion_torque": "80 N*m"}
+    return {"name": "table", "role": "measurement"} | operating | columns
+
+
+@pytest.fixture(scope="module")
+def three_channels(truth):
+    return rig_record(truth, quantities=("dte", "theta_p", "bearing_force_x_p"))
+
+
+#: Headings of a table, and how much of the unit is in the SI unit.
+UNITS = {
+    "SI": ("time [s]", 1.0, "dte [m]", 1.0, "theta_p [rad]", 1.0, "bearing_force_x_p [N]", 1.0),
+    "small": ("time [ms]", 1e3, "dte [um]", 1e6, "theta_p [mrad]", 1e3, "bearing_force_x_p [kN]", 1e-3),
+    "degrees": (
+        "time [us]", 1e6, "dte [mm]", 1e3, "theta_p [deg]", 180.0 / np.pi, "bearing_force_x_p [lbf]",
+        1.0 / 4.4482216152605,
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("units", UNITS)
+def test_unit_of_a_record_does_not_matter(three_channels, units):
+    expected = measured_records(rig_pair(), [three_channels])[0].values
+    curves = [three_channels.places, *(channel.values for channel in three_channels.channels)]
+    headings = UNITS[units]
+    columns = {
+        name: factor * values
+        for name, factor, values in zip(headings[::2], headings[1::2], curves, strict=True)
+    }
+    found = measured_records(rig_pair(), [_mapping(columns)])[0].values
+    # A table states its times with rounding, so phases differ by 1e-9 of a cycle.
+    for part in np.split(np.arange(expected.size), 3):
+        size = np.abs(expected[part]).max()
+        np.testing.assert_allclose(found[part], expected[part], atol=1e-6 * size, rtol=0.0)
+
+
+@pytest.mark.parametrize(("unit", "turn"), [("deg", 360.0), ("rad", 2.0 * np.pi)])
+def test_angle_of_the_pinion_in_degrees_and_radians(truth, exact, unit, turn):
+    record = rig_record(truth)
+    cycles = record.places / truth.geometry.mesh_period
+    angle = turn * cycles / truth.pinion.teeth
+    mapping = _mapping({f"pinion_angle [{unit}]": angle, "dte [um]": 1e6 * record.channels[0].values})
+    found = measured_records(rig_pair(), [mapping])[0].values
+    expected = exact.records[0].values
+    np.testing.assert_allclose(found, expected, atol=1e-6 * np.abs(expected).max(), rtol=0.0)
 
 
 def test_a_second_channel_tells_more(truth, exact):
@@ -166,6 +211,23 @@ def test_the_slopes_are_those_of_the_minimum(one_run):
     np.testing.assert_allclose(motions.values, one.motions.values, rtol=1e-9, atol=1e-15)
     fresh = fit.slopes(one.z, motions)
     np.testing.assert_allclose(fresh, one.slopes, rtol=1e-6, atol=1e-6 * np.abs(fresh).max())
+
+
+def test_each_slope_is_that_of_the_motions(one_run):
+    from validation.calibrate.fit import Fit
+
+    one = one_run.components[0].minimum
+    fit = Fit(rig_pair(), one_run.inputs, one_run.records, np.eye(one.motions.values.size))
+    largest = np.linalg.norm(one.slopes, axis=0).max()
+    for j in range(one.z.size):
+        off = []
+        for step in (-0.1, 0.1):
+            moved = one.z.copy()
+            moved[j] += step
+            side = (fit.motions(moved).values - one.motions.values) / step
+            off.append(np.linalg.norm(one.slopes[:, j] - side))
+        # Differences towards the middle of the range: one of the two sides.
+        assert min(off) < 1e-6 * largest, one_run.inputs[j].field
 
 
 def test_the_inputs_are_those_of_the_file(one_run):

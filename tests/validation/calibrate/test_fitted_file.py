@@ -1,5 +1,7 @@
 """The fitted file: read again it is the same pair, and its ranges are those of the posterior."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from typer.testing import CliRunner
@@ -7,11 +9,13 @@ from typer.testing import CliRunner
 import spurcheck
 from lumped.schema.assumed import State
 from tests.validation.calibrate.rig import RANGES, rig_pair
+from tests.validation.reporting.written import SMALL
 from validation.cli import app
 from validation.prediction.compare import compare
 from validation.prediction.inputs import uncertain_inputs
 from validation.prediction.motion import predicted
 from validation.prediction.uncertainty import uncertainty
+from validation.reporting.results import Results
 
 RUNNER = CliRunner()
 
@@ -98,6 +102,18 @@ def test_report_reads_the_file(fitted, tmp_path):
     line = next(one for one in parameters.splitlines() if one.startswith("mesh.stiffness_factor"))
     assert "by records" in line
     assert "from record" in line
+
+
+def test_page_1_has_the_ranges_of_the_machines(one_run, fitted):
+    # ``spread`` is the range of a row of page 1 over its value.
+    results = Results(spurcheck.load_gear_pair(fitted), replace(SMALL, samples=64))
+    for name in ("dte_peak_to_peak", "dynamic_factor", "bearing_rms"):
+        # 64 samples: each of the 32 machines twice. The file has 7 digits.
+        machines = np.repeat(one_run.results[name].to_numpy(), 2)
+        value = results.prediction.numbers[name]
+        ends = [value * (1.0 + end) for end in results.spread(name)]
+        assert ends == pytest.approx(list(np.percentile(machines, [5.0, 95.0])), rel=1e-5)
+        assert value == pytest.approx(one_run.machines.numbers[0][name], rel=1e-3)
 
 
 def _written(folder, truth_values):

@@ -254,6 +254,8 @@ def test_parts_of_the_compliance(pair):
         "no compression": parts.pinion.axial + parts.gear.axial,
         "no foundation": parts.pinion.foundation + parts.gear.foundation,
         "no contact": parts.hertz,
+        "a quarter of the contact": 0.75 * parts.hertz,
+        "four times the contact": -3.0 * parts.hertz,
         "half the contact": 0.5 * parts.hertz,
         "twice the contact": -parts.hertz,
         "the pinion's tooth alone": parts.gear.total,

@@ -12,12 +12,25 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import scipy.signal
 
 import lumped
 from lumped.schema.bodies import bodies_of
 from tests.unlike_pairs import unlike_pair
 from tests.validation.check.motions import lumped_motion
+from tests.validation.check.wrong_readings import (
+    AXES,
+    averaged,
+    butterworth,
+    butterworth_both_ways,
+    butterworth_of_fourth_order,
+    changed,
+    high_passed,
+    low_passed,
+    renamed,
+    swapped,
+    three_orders,
+    turned,
+)
 from validation.check.curves import Channel, Curves
 from validation.check.explanations.cause import Variant
 from validation.check.explanations.misreadings import causes_of_channels
@@ -43,14 +56,6 @@ def sampled(motion, channels=CHANNELS, cycles=2, per_cycle=421, phase=0.3):
     return Curves(
         "other", "time", time, tuple(Channel(name, name, motion.at(name, place)) for name in channels)
     )
-
-
-def changed(curves, names, change):
-    """Curves with ``change(values)`` of some channels."""
-    channels = (
-        replace(one, values=change(one.values)) if one.name in names else one for one in curves.channels
-    )
-    return replace(curves, channels=tuple(channels))
 
 
 @pytest.fixture(scope="module")
@@ -82,6 +87,15 @@ def pairs():
                 **COULOMB,
                 "pinion.tip_relief": {"amount": "4 um", "start_roll_angle": "24 deg"},
                 "gear.tip_relief": {"amount": "6 um", "start_roll_angle": "23 deg"},
+            }
+        ),
+        "damped relief": symmetric.with_(
+            {
+                **COULOMB,
+                "operating.pinion_speed": "6000 rpm",
+                "mesh.damping_ratio": 0.3,
+                "pinion.tip_relief": {"amount": "14 um", "start_roll_angle": "25 deg"},
+                "gear.tip_relief": {"amount": "9 um", "start_roll_angle": "24 deg"},
             }
         ),
         "unlike addenda": unlike.with_({"pinion.addendum": None, "gear.tip_alteration": "-0.4 mm"}),
@@ -144,6 +158,17 @@ FIXED = {
     "parts of the compliance": ("energy", "no foundation"),
     "table of the stiffness": ("unlike", 8),
     "peak at the pitch point": ("unlike", None),
+    "formula of the stiffness": ("unlike", "0.8 forgotten"),
+    "Rz for Ra": ("rough", "Ra for Rz 5"),
+    "end of the relief": ("both relieved", "of the pinion"),
+    "start of the relief": ("both relieved", "height as a length"),
+    "sign of the relief": ("both relieved", "of the gear"),
+    "one error for all pairs": ("both relieved", "newest pair"),
+    "rate of the errors": ("damped relief", None),
+    "number of pairs that carry": ("unlike", "newest 2"),
+    "bearings in the mesh stiffness": ("unlike", None),
+    "input of the friction law": ("rough", "half of the slide-to-roll ratio"),
+    "exponent of the contact force": ("unlike", "exponent 1.5"),
 }
 #: Further fixed values of these causes: name of the cause, label.
 FURTHER = (
@@ -179,6 +204,16 @@ FURTHER = (
     ("stiffness over the mesh cycle", "two harmonics"),
     ("bearing damping left out", "left out, along"),
     ("radius of the discs", "root circle"),
+    ("number of pairs that carry", "oldest 2"),
+    ("number of pairs that carry", "last one held"),
+    ("table of the stiffness", "12, spline"),
+    ("friction over the path", "coefficient of the newest pair"),
+    ("friction over the path", "middle of the line of action"),
+    ("static error as an excitation", "stiffness as a force"),
+    ("constant speed of a gear", "the gear, with its damper"),
+    ("formula of the mesh damper", "mass of translation of the pinion"),
+    ("inertia by m r^2", "both gears: 4, GD^2"),
+    ("exponent of the contact force", "exponent 10/9"),
 )
 FREE = {
     "mesh stiffness": 1.17,
@@ -240,6 +275,11 @@ FREE = {
     "contact ratio": 0.15,
     "end of the path of contact": -0.2,
     "start of the path of contact": 0.15,
+    "compliance in series": 0.35,
+    "constant friction coefficient": 0.05,
+    "friction smoothed by a tanh": 0.4,
+    "friction smoothed by a ramp": 0.6,
+    "forces one step late": 0.002,
 }
 #: Pairs of free parameters that the pair "unlike" does not have.
 PAIR_OF = {
@@ -247,6 +287,7 @@ PAIR_OF = {
     "length of the relief": "relieved",
     "viscosity": "rough",
     "roughness": "rough",
+    "constant friction coefficient": "rough",
     "density of the pinion": "soft bearings",
     "density of the gear": "soft bearings",
 }
@@ -264,6 +305,7 @@ READINGS = {
     "another quantity": lambda curves: renamed(curves, "x_p", "bearing_force_x_p"),
     "time reversed": lambda curves: changed(curves, CHANNELS, lambda v: v[::-1]),
     "delay of a channel": lambda curves: changed(curves, ("dte",), lambda v: np.roll(v, 29)),
+    "low-pass filter of fourth order": lambda curves: changed(curves, CHANNELS, butterworth_of_fourth_order),
     "few mesh orders": lambda curves: changed(curves, CHANNELS, three_orders),
     "moving average": lambda curves: changed(curves, CHANNELS, averaged),
     "axes of the bearing forces": lambda curves: turned(
@@ -288,74 +330,10 @@ SINGLE = (
     "dampers stay",
     "amount of the deviations",
     "sign of the deviations",
+    "reading of the deviations",
+    "places of tooth pairs",
+    "few digits",  # test_digits.py
 )
-
-
-def swapped(curves, one, other):
-    """Curves with two channels in each other's place."""
-    values = {channel.name: channel.values for channel in curves.channels}
-    values[one], values[other] = values[other], values[one]
-    return replace(curves, channels=tuple(replace(c, values=values[c.name]) for c in curves.channels))
-
-
-def renamed(curves, holds, name):
-    """Curves in which a channel holds the values of another one."""
-    values = next(c.values for c in curves.channels if c.name == holds)
-    return changed(curves, (name,), lambda v: values)
-
-
-def low_passed(values, cutoff=3.0, cycles=2):
-    """Values through a low-pass filter of first order, by their Fourier series."""
-    orders = np.fft.rfftfreq(values.size, cycles / values.size)
-    return np.fft.irfft(np.fft.rfft(values) / (1.0 + 1j * orders / cutoff), values.size)
-
-
-def butterworth(values, cutoff=2.5, cycles=2):
-    """Values through an analogue Butterworth filter of second order of scipy, at mesh orders."""
-    numerator, denominator = scipy.signal.butter(2, cutoff, analog=True)
-    orders = np.fft.rfftfreq(values.size, cycles / values.size)
-    gains = scipy.signal.freqs(numerator, denominator, orders)[1]
-    return np.fft.irfft(np.fft.rfft(values) * gains, values.size)
-
-
-def butterworth_both_ways(values, cutoff=2.5, cycles=2):
-    """Values through a Butterworth filter of second order, forward and backward: gain 1/(1 + (m/c)^4)."""
-    orders = np.fft.rfftfreq(values.size, cycles / values.size)
-    return np.fft.irfft(np.fft.rfft(values) / (1.0 + (orders / cutoff) ** 4), values.size)
-
-
-def high_passed(values, cutoff=0.7, cycles=2):
-    """Values through a high-pass filter of first order, with their mean."""
-    orders = np.fft.rfftfreq(values.size, cycles / values.size)
-    gains = np.ones(orders.size, dtype=complex)
-    gains[1:] = 1j * orders[1:] / (1j * orders[1:] + cutoff)
-    return np.fft.irfft(np.fft.rfft(values) * gains, values.size)
-
-
-def averaged(values, window=0.15, cycles=2):
-    """Values through a moving average over a window [mesh cycles], as a circular sum."""
-    half = round(0.5 * window * values.size / cycles)
-    return np.mean([np.roll(values, shift) for shift in range(-half, half + 1)], axis=0)
-
-
-def three_orders(values, cycles=2):
-    """The mean and the first three mesh orders of values."""
-    waves = np.fft.rfft(values)
-    waves[3 * cycles + 1 :] = 0.0
-    return np.fft.irfft(waves, values.size)
-
-
-#: Channels along and across the line of action.
-AXES = (("x_p", "y_p"), ("bearing_force_x_p", "bearing_force_y_p"))
-
-
-def turned(curves, degrees, *axes):
-    """Curves whose axes are turned by an angle from the line of action: a rotation by hand."""
-    values = {channel.name: channel.values for channel in curves.channels}
-    cosine, sine = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
-    for x, y in axes:
-        values[x], values[y] = cosine * values[x] - sine * values[y], sine * values[x] + cosine * values[y]
-    return replace(curves, channels=tuple(replace(c, values=values[c.name]) for c in curves.channels))
 
 
 def rivals(name, problem, whole=False):
@@ -477,10 +455,21 @@ def test_deviations_with_another_size_or_sign(pairs, shared):
     index = 4.0 * np.random.default_rng(3).normal(size=28)
     pair = pairs["eccentric"].with_({"pinion.mounting": None, "pinion.deviations": {"index": tuple(index)}})
     motion = lumped_motion(pair)
-    for name, factor in (("amount of the deviations", 1.7), ("sign of the deviations", -1.0)):
-        other = lumped_motion(pair.with_({"pinion.deviations": {"index": tuple(factor * index)}}))
+    backwards = np.append(index[0], index[:0:-1])
+    for name, factor, numbers in (
+        ("amount of the deviations", 1.7, 1.7 * index),
+        ("sign of the deviations", -1.0, -index),
+        ("reading of the deviations", 0.0, backwards),
+    ):
+        other = lumped_motion(pair.with_({"pinion.deviations": {"index": tuple(numbers)}}))
         curves = sampled(other, cycles=4 * motion.mesh_cycles + 1, per_cycle=64)
-        rivals_of_it = ("deviations", "amount of the deviations", "sign of the deviations", "mesh damping")
+        rivals_of_it = (
+            "deviations",
+            "amount of the deviations",
+            "sign of the deviations",
+            "reading of the deviations",
+            "mesh damping",
+        )
         ladder = climb(
             Problem.of(pair, curves, motion),
             limit=LIMIT,
@@ -537,22 +526,32 @@ def test_transmission_error_of_other_displacements(words, share_pinion, share_ge
         ("dte", "rotations on the pitch circles", None),
         ("bearing_force_y_p", "the resultant of both directions", None),
         ("y_g", "the magnitude, without sign", None),
+        ("friction", "the sum of the sizes", None),
+        ("mesh_force", "the load of the leading tooth pair alone", None),
         ("mesh_force", "per millimetre of face width", 1e-3),
     ],
 )
 def test_channel_that_holds_another_quantity(name, words, share, pairs, shared):
-    """Values by hand: K delta, delta - F/K, rotations times 1/cos(alpha), the hypotenuse, |y|, F/b."""
+    """Values by hand: K delta, delta - F/K, rotations times 1/cos(alpha), a hypotenuse, |y|, SUM |F|, F/b."""
     pair = pairs["unlike"]
     g = pair.geometry
     motion = lumped_motion(pair)
-    names = ("dte", "x_p", "x_g", "y_g", "mesh_force", "bearing_force_x_p", "bearing_force_y_p")
+    names = ("dte", "x_p", "x_g", "y_g", "mesh_force", "friction", "bearing_force_x_p", "bearing_force_y_p")
     curves = sampled(motion, (*names, "mesh_stiffness"))
     values = {channel.name: channel.values for channel in curves.channels}
     curves = replace(curves, channels=curves.channels[:-1])
     force = pair.operating.pinion_torque / g.base_radius_pinion
+    phase = 0.3 + np.arange(curves.places.size) / 421
     displaced = values["x_p"] - values["x_g"]
     rotations = values["dte"] - displaced
+    grid = np.arange(512) / 512
+    of_pairs = {
+        name: [np.interp(phase % 1.0, grid, row, period=1.0) for row in motion.motion[name].to_numpy()]
+        for name in ("normal_load", "friction_force")
+    }
     wrong = {
+        "the sum of the sizes": np.abs(of_pairs["friction_force"]).sum(axis=0),
+        "the load of the leading tooth pair alone": of_pairs["normal_load"][0],
         "without the dampers": values["mesh_stiffness"] * values["dte"],
         "less the static one": values["dte"] - force / values["mesh_stiffness"],
         "rotations on the pitch circles": rotations / np.cos(g.operating_pressure_angle) + displaced,
@@ -568,6 +567,34 @@ def test_channel_that_holds_another_quantity(name, words, share, pairs, shared):
     ladder = climbed(problem, shared, "unlike", cause)
     assert [step.name for step in ladder.steps] == [cause]
     assert words in ladder.steps[0].sentence
+
+
+@pytest.mark.parametrize("label", ["newest pair first", "leading pair first"])
+def test_places_of_the_mesh_in_channels_of_tooth_pairs(label, pairs, shared):
+    """Row i holds the load of the i-th pair on the path, so that it jumps with every mesh cycle."""
+    pair = pairs["unlike"]
+    motion = lumped_motion(pair)
+    curves = sampled(motion, ("dte", "x_p"), cycles=36, per_cycle=101)
+    phase = 0.3 + np.arange(curves.places.size) / 101
+    loads = motion.motion["normal_load"].to_numpy()  # the pair ahead is first
+    rows = loads if label.startswith("leading") else loads[::-1]
+    grid = np.arange(loads.shape[1]) / loads.shape[1]
+    channels = tuple(
+        Channel(f"load {name}", "normal_load", np.interp(phase % 1.0, grid, row, period=1.0), tooth_pair=name)
+        for name, row in zip("AB", rows, strict=False)
+    )
+    problem = Problem.of(pair, replace(curves, channels=(*curves.channels, *channels)), motion)
+    ladder = climbed(problem, shared, "unlike", "places of tooth pairs")
+    assert [(step.name, step.factor) for step in ladder.steps] == [("places of tooth pairs", label)]
+
+
+def test_transmission_error_with_a_dead_zone_about_zero(pairs, shared):
+    """delta is larger by half of the backlash, and nothing else changes."""
+    pair = pairs["unlike"].with_({"mesh.backlash": "30 um"})
+    motion = lumped_motion(pair)
+    curves = changed(sampled(motion), ("dte",), lambda v: v + 15e-6)
+    ladder = climbed(Problem.of(pair, curves, motion), shared, "backlash", "zero of a channel")
+    assert [step.factor for step in ladder.steps] == ["dte: half of the backlash"]
 
 
 def test_time_axis(pairs, shared):

@@ -11,6 +11,7 @@ from typing import Any
 
 from validation.check.explanations.cause import Cause, Choice, Kind, Variant
 from validation.check.explanations.friction_courses import Friction, reversal_of
+from validation.check.explanations.friction_inputs import FRICTION_INPUTS
 from validation.check.explanations.path_alterations import may_vary
 from validation.check.explanations.physics import Arms, Bearings
 from validation.check.problem import Problem
@@ -25,7 +26,11 @@ _APART = 5e-3
 #: Trial slopes and curvatures of a stiffness over its path, and trial lags [mesh cycles].
 _SHAPE = (-0.5, -0.2, 0.2, 0.5)
 _LAG = (-0.3, -0.1, 0.1, 0.3)
+_LATE = (0.001, 0.003, 0.01, 0.03)
+#: A load below this share of the largest one is none.
+_NO_LOAD = 1e-6
 _RAMPS = (0.03, 0.1, 0.2, 0.4)
+_SMOOTHED = (0.1, 0.25, 0.5, 1.0, 2.0, 4.0)
 #: Supports of which a part is rigid, in words.
 _RIGID: dict[Bearings, str] = {
     "rigid pinion": "of the pinion",
@@ -126,6 +131,16 @@ def _friction_course(problem: Problem, variant: Variant) -> list[Choice]:
             "friction of equal shares of the mesh force on the pairs in contact",
             course="equal shares of the load",
         ),
+        _altered(
+            "coefficient of the newest pair",
+            "the friction coefficient of the newest tooth pair, with its sign, for all pairs",
+            course="coefficient of the newest pair",
+        ),
+        _altered(
+            "coefficient of the leading pair",
+            "the friction coefficient of the leading tooth pair, with its sign, for all pairs",
+            course="coefficient of the leading pair",
+        ),
         *_reversals(variant),
         *_static_friction(variant),
     ]
@@ -162,12 +177,33 @@ def _reversals(variant: Variant) -> list[Choice]:
             "friction that reverses at the pitch point of the standard centre distance",
         ),
         ("middle of the path", "friction that reverses in the middle of the path of contact"),
+        (
+            "middle of the line of action",
+            "friction that reverses in the middle between both base circles",
+        ),
     )
     return [
         _altered(course, words, course=course)
         for course, words in places
         if abs((reversal_of(pair, course, g.L_XA, g.L_XD) or g.L_XP) - g.L_XP) > _APART * g.base_pitch
     ]
+
+
+def _friction_inputs(problem: Problem, variant: Variant) -> list[Choice]:
+    """Values that the friction law reads wrongly."""
+    law = variant.pair.friction.law
+    if variant.physics.friction_input:
+        return []
+    return [
+        _altered(label, mistake.words, friction_input=label)
+        for label, mistake in FRICTION_INPUTS.items()
+        if law in mistake.laws
+    ]
+
+
+def _smoothed(field: str) -> Callable[[Variant, float], Variant]:
+    """Change of a variant by friction that is smoothed over the sliding velocity."""
+    return lambda variant, value: variant.with_physics(**{field: max(value, 0.0)})
 
 
 def _mesh_force_sign(problem: Problem, variant: Variant) -> list[Choice]:
@@ -237,7 +273,24 @@ def _static_error(problem: Problem, variant: Variant) -> list[Choice]:
     return [
         _altered("second excitation", words, static_error=1.0),
         _altered("second excitation, wrong sign", f"{words}, with the wrong sign", static_error=-1.0),
+        *_excited(problem, variant),
     ]
+
+
+def _excited(problem: Problem, variant: Variant) -> Iterator[Choice]:
+    """A constant mesh stiffness that an error or a force excites."""
+    if not may_vary(problem, variant):
+        return
+    yield _altered(
+        "constant stiffness",
+        "a constant mesh stiffness that the static transmission error excites",
+        excitation="static error",
+    )
+    yield _altered(
+        "stiffness as a force",
+        "a constant mesh stiffness, with the variation of the stiffness as a force",
+        excitation="stiffness as a force",
+    )
 
 
 def _prescribed(field: str) -> Callable[[Variant, float], Variant]:
@@ -277,9 +330,53 @@ def _dampers(problem: Problem, variant: Variant) -> list[Choice]:
 
 
 def _pulling(problem: Problem, variant: Variant) -> list[Choice]:
-    if variant.physics.pulling:
+    """A linear mesh; where teeth part also their other forces."""
+    if variant.physics.pulling or variant.physics.contact:
         return []
-    return [_altered("linear", "a linear mesh, in which teeth may pull", pulling=True)]
+    words = "a linear mesh, in which teeth may pull, each by itself"
+    choices = [_altered("linear", words, pulling=True)]
+    if not takes_contact_force(variant) or not _parts(problem):
+        return choices
+    return [
+        *choices,
+        _altered(
+            "sum of the pairs",
+            "contact loss of the sum of all pairs, so that a single pair may pull",
+            contact="sum of the pairs",
+        ),
+        _altered(
+            "damper across the gap",
+            "dampers of the teeth that act on across the gap, with the spring alone cut",
+            contact="damper across the gap",
+        ),
+    ]
+
+
+def takes_contact_force(variant: Variant) -> bool:
+    """Return whether another contact force can be computed."""
+    pair = variant.pair
+    like_teeth = pair.mesh.contact == "prescribed" and pair.healthy is pair
+    return like_teeth and pair.shafts is None and variant.physics.bearings == "elastic"
+
+
+def _parts(problem: Problem) -> bool:
+    """Whether a tooth pair of our motion has no load while it is on its path."""
+    motion = problem.motion.motion
+    load = motion["normal_load"].to_numpy()[motion["contact"].to_numpy() > 0]
+    return bool(load.min() <= _NO_LOAD * load.max())
+
+
+def _exponent(problem: Problem, variant: Variant) -> list[Choice]:
+    """Contact forces of impact functions."""
+    if not takes_contact_force(variant) or variant.physics.contact:
+        return []
+    texts = {
+        "exponent 1.5": "a contact force with the exponent 1.5, calibrated at the mean load",
+        "exponent 1.5 of one pair": "a contact force with the exponent 1.5, calibrated on a single pair",
+        "exponent 1.5 in millimetres": "a contact force with the exponent 1.5 of millimetres",
+        "exponent 10/9": "a contact force with the exponent 10/9, calibrated at the mean load",
+    }
+    return [_altered(label, words, contact=label) for label, words in texts.items()]
 
 
 def _over_cycle(problem: Problem, variant: Variant) -> list[Choice]:
@@ -329,9 +426,21 @@ def _radius(problem: Problem, variant: Variant) -> list[Choice]:
         return []
     angle = variant.pair.geometry.operating_pressure_angle
     words = "pitch radii in place of base radii as lever arms"
+    cosine = math.cos(variant.pair.basic_rack.pressure_angle) / math.cos(angle)
     return [
         _altered("pitch radius", words, radius=1.0 / math.cos(angle)),
         _altered("diameter", "diameters in place of radii as lever arms", radius=2.0),
+        *(
+            [
+                _altered(
+                    "pitch radius by the rack",
+                    "pitch radii of operation times the cosine of the rack as base radii",
+                    radius=cosine,
+                )
+            ]
+            if abs(cosine - 1.0) > _APART
+            else []
+        ),
     ]
 
 
@@ -382,9 +491,28 @@ def _causes() -> Iterator[Cause]:
         "friction over the path",
         "another course of the friction over the path of contact",
         "without reversal; leading or newest pair, with its load or the load of the mesh; equal shares; "
-        "pitch point of the rack; middle of the path; static load; natural logarithm",
+        "coefficient of one pair for all; pitch point of the rack; middle of the path or of the line; static "
+        "load; natural logarithm",
         _friction_course,
     )
+    yield altered(
+        "input of the friction law",
+        "a value that the friction law reads wrongly",
+        "mean or sum of the rolling velocities, slide-to-roll ratio, modulus, load, units, smooth flanks",
+        _friction_inputs,
+    )
+    for field, shape in (("tanh", "a tanh"), ("ramp", "a ramp")):
+        yield Cause(
+            name=f"friction smoothed by {shape}",
+            kind=Kind.PHYSICS,
+            meaning=f"friction that rises by {shape} over a share of the largest sliding velocity",
+            span=f"about {_SMOOTHED[0]:g} to {_SMOOTHED[-1]:g}",
+            grid=_SMOOTHED,
+            neutral=0.0,
+            change=_smoothed(field),
+            words=f"friction that rises by {shape} over {{value}} of the largest sliding velocity",
+            applies=lambda problem, variant: _has_friction(variant),
+        )
     yield Cause(
         name="friction coefficient",
         kind=Kind.PHYSICS,
@@ -404,7 +532,29 @@ def _causes() -> Iterator[Cause]:
         "constant, proportional, root of the whole mesh, constant for each pair; bearings too",
         _dampers,
     )
-    yield altered("teeth pull", "a linear mesh in place of unilateral contact", "linear", _pulling)
+    yield altered(
+        "teeth pull",
+        "a linear mesh in place of unilateral contact, or another force where teeth part",
+        "linear, sum of the pairs, damper across the gap",
+        _pulling,
+    )
+    yield altered(
+        "exponent of the contact force",
+        "a contact force that grows with a power of the deflection",
+        "1.5, 1.5 of one pair, 1.5 in millimetres, 10/9",
+        _exponent,
+    )
+    yield Cause(
+        name="forces one step late",
+        kind=Kind.PHYSICS,
+        meaning="forces of the teeth by an earlier motion, such as that of the last step, in mesh cycles",
+        span=f"about {_LATE[0]:g} to {_LATE[-1]:g}",
+        grid=_LATE,
+        neutral=0.0,
+        change=lambda variant, value: variant.with_physics(late_force=value),
+        words="forces of the teeth by the motion of {value} mesh cycles before, as of the last step",
+        applies=lambda problem, variant: takes_contact_force(variant),
+    )
     yield altered(
         "stiffness over the mesh cycle",
         "another course of the mesh stiffness",
@@ -453,7 +603,10 @@ def _causes() -> Iterator[Cause]:
             ),
         )
     yield altered(
-        "pitch radius", "pitch radii or diameters in place of base radii", "1/cos(alpha), 2", _radius
+        "pitch radius",
+        "pitch radii or diameters in place of base radii",
+        "1/cos(alpha), 2, cos(alpha)/cos(alpha_w)",
+        _radius,
     )
     yield altered(
         "approach of the teeth",
@@ -470,8 +623,8 @@ def _causes() -> Iterator[Cause]:
     )
     yield altered(
         "static error as an excitation",
-        "the static transmission error beside the varying stiffness",
-        "right and wrong sign",
+        "the static transmission error as an excitation, beside the varying stiffness or in place of it",
+        "right and wrong sign; constant stiffness; stiffness as a force",
         _static_error,
     )
     for field, meaning, grid in (

@@ -25,6 +25,16 @@ from validation.check.explanations.fields import (
 )
 from validation.check.problem import Problem
 
+#: Factors by which inertias are mistaken: factor, label, words; those of both gears alone.
+_INERTIAS = (
+    (2.0, "2", "m r^2 in place of m r^2/2"),
+    (0.5, "0.5", "half of its value"),
+    (4.0, "4, GD^2", "GD^2, four times its value, or by a diameter for a radius"),
+    (0.25, "0.25", "a quarter of its value, as if it were GD^2"),
+    (1e3, "1000", "a unit that makes it 1000 times too large"),
+    (1e-3, "0.001", "a unit that makes it 1000 times too small"),
+)
+_OF_BOTH = (1e3, 1e-3)
 #: Trial factors of a mass, and of a bearing stiffness.
 _MASS = (0.12, 0.35, 0.6, 0.8, 1.25, 1.7, 2.8, 8.0, 25.0)
 _BEARING = (0.01, 0.1, 0.4, 2.5, 10.0, 100.0)
@@ -79,18 +89,37 @@ def _no_bearing_damping(problem: Problem, variant: Variant) -> list[Choice]:
 
 
 def _ring(problem: Problem, variant: Variant) -> list[Choice]:
-    """Inertia by m r^2 in place of m r^2/2, and the other way round."""
+    """Inertia by m r^2 in place of m r^2/2, and the other way round; GD^2; about a diameter; other units."""
     choices = []
     for gears, words in ((GEARS, "both gears"), *(((gear,), f"the {gear}") for gear in GEARS)):
-        for value, formula in ((2.0, "m r^2 in place of m r^2/2"), (0.5, "half of its value")):
+        for value, mark, formula in _INERTIAS:
+            if value in _OF_BOTH and len(gears) == 1:
+                continue
             choices.append(
                 choice(
-                    f"{words}: {value:g}",
+                    f"{words}: {mark}",
                     f"the inertia of {words} by {formula}",
                     lambda pair, value=value, gears=gears: _inertia(pair, value, gears),  # type: ignore[misc]
                 )
             )
+        choices.append(
+            choice(
+                f"{words}: about a diameter",
+                f"the inertia of {words} about a diameter, not about the axis",
+                lambda pair, gears=gears: _about_a_diameter(pair, gears),  # type: ignore[misc]
+            )
+        )
     return choices
+
+
+def _about_a_diameter(pair: GearPair, gears: Sequence[str]) -> Fields:
+    """J/2 + m b^2/12 of a disc of the width b."""
+    bodies = bodies_of(pair)
+    return {
+        f"{gear}.inertia": 0.5 * getattr(bodies, f"inertia_{gear}")
+        + getattr(bodies, f"mass_{gear}") * getattr(pair, gear).face_width ** 2 / 12.0
+        for gear in gears
+    }
 
 
 def _disc(problem: Problem, variant: Variant) -> list[Choice]:
@@ -224,8 +253,8 @@ def _causes() -> Iterator[Cause]:
     )
     yield fixed_values(
         "inertia by m r^2",
-        "m r^2 in place of m r^2/2, or half of the inertia",
-        "2, 0.5; both gears, one gear",
+        "m r^2 in place of m r^2/2, half of the inertia, GD^2, about a diameter, or another unit",
+        "2, 0.5, 4, 0.25, about a diameter: both gears, one gear; 1000, 0.001",
         _ring,
     )
     yield fixed_values(

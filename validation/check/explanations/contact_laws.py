@@ -38,8 +38,10 @@ Compliance = Literal[
     "no compression",
     "no foundation",
     "no contact",
+    "a quarter of the contact",
     "half the contact",
     "twice the contact",
+    "four times the contact",
     "the pinion's tooth alone",
     "the gear's tooth alone",
     "two teeth of the pinion",
@@ -66,6 +68,12 @@ COMPLIANCES: Mapping[Compliance, _Factors] = MappingProxyType(
             {"foundation": 0.0}, "the gear bodies, the fillet foundation, left out of the compliance"
         ),
         "no contact": _Factors({"hertz": 0.0}, "the Hertzian contact left out of the compliance"),
+        "a quarter of the contact": _Factors(
+            {"hertz": 0.25}, "a quarter of the compliance of the Hertzian contact"
+        ),
+        "four times the contact": _Factors(
+            {"hertz": 4.0}, "four times the compliance of the Hertzian contact"
+        ),
         "half the contact": _Factors({"hertz": 0.5}, "half of the compliance of the Hertzian contact"),
         "twice the contact": _Factors({"hertz": 2.0}, "twice the compliance of the Hertzian contact"),
         "the pinion's tooth alone": _Factors({"gear": 0.0}, "the compliance of the pinion's tooth alone"),
@@ -159,11 +167,11 @@ def _longer(pair: GearPair, friction: PathFunction, interval: tuple[float, float
     return PathFunction.fit(further, breaks, marks, tolerance=TOLERANCE * max(size, 1e-300))
 
 
-def with_table(pair: GearPair, elements: MeshElements, entries: int) -> MeshElements:
+def with_table(pair: GearPair, elements: MeshElements, entries: int, *, spline: bool) -> MeshElements:
     """Return element laws whose stiffness of the whole mesh comes from a table over the mesh cycle.
 
-    Entries are at equal steps from A on; between them are straight lines. Negative: so many steps, each with
-    the value of its entry.
+    Entries are at equal steps from A on; between them are straight lines, or a cubic spline that repeats with
+    the cycle. Negative: so many steps, each with the value of its entry.
     """
     stiffness = elements.stiffness
     low, _ = stiffness.interval
@@ -173,9 +181,12 @@ def with_table(pair: GearPair, elements: MeshElements, entries: int) -> MeshElem
     phases = np.arange(count + 1) / count
     # Just behind the entry: at A the new pair carries load.
     values = total(low + (phases % 1.0) * pitch + 1e-6 * pitch)
+    curve = CubicSpline(phases, values, bc_type="periodic") if spline else None
 
     def from_table(xi: FloatArray) -> FloatArray:
         phase = np.mod((xi - low) / pitch, 1.0)
+        if curve is not None:
+            return np.asarray(np.maximum(curve(phase), _LEAST_STIFFNESS * values.max()))
         if entries < 0:
             return np.asarray(values[np.minimum((phase * count).astype(int), count - 1)])
         return np.asarray(np.interp(phase, phases, values))
@@ -200,6 +211,59 @@ def _of_whole_mesh(
 
     further = np.add.outer(places, pitch * np.arange(int(np.ceil((high - low) / pitch)) + 1)).ravel()
     return with_law(pair, elements, fitted(changed, pair, elements, None, further), stiffness.interval)
+
+
+def with_fewer_pairs(pair: GearPair, elements: MeshElements, most: int) -> MeshElements:
+    """Return element laws in which at most so many pairs carry load, the newest; negative: the oldest."""
+    stiffness = elements.stiffness
+    low, high = stiffness.interval
+    length = abs(most) * pair.geometry.base_pitch
+    new = (low, min(low + length, high)) if most > 0 else (max(high - length, low), high)
+    changed = with_law(pair, elements, fitted(stiffness, pair, elements, new), new)
+    return replace(changed, friction=_longer(pair, elements.friction, new))
+
+
+def with_last_value_held(pair: GearPair, elements: MeshElements) -> MeshElements:
+    """Return element laws whose stiffness stays as at D up to the next whole mesh cycle behind A."""
+    stiffness = elements.stiffness
+    low, high = stiffness.interval
+    pitch = pair.geometry.base_pitch
+    new = (low, low + np.ceil((high - low) / pitch) * pitch)
+    last = high - 1e-9 * pitch
+
+    def held(xi: FloatArray) -> FloatArray:
+        return stiffness(np.minimum(xi, last))
+
+    changed = with_law(pair, elements, fitted(held, pair, elements, new, np.array([high])), new)
+    return replace(changed, friction=_longer(pair, elements.friction, new))
+
+
+def with_compliance_in_series(pair: GearPair, elements: MeshElements, share: float) -> MeshElements:
+    """Return element laws with a further constant compliance of each pair, over 1/k of the mean k."""
+    stiffness = elements.stiffness
+    mean = stiffness.mean()
+
+    def softer(xi: FloatArray) -> FloatArray:
+        ratio = stiffness(xi) / mean
+        return np.asarray(stiffness(xi) / np.maximum(1.0 + share * ratio, _LEAST_STIFFNESS))
+
+    return with_law(pair, elements, fitted(softer, pair, elements), stiffness.interval)
+
+
+def with_bearings_in_series(pair: GearPair, elements: MeshElements) -> MeshElements:
+    """Return element laws whose mesh stiffness K has the bearings along the line of action in it.
+
+    1/K' = 1/K + 1/k_p + 1/k_g, as from a torsion test of the whole gearbox.
+    """
+    stiffness = elements.stiffness
+    total = total_of_pairs(pair, stiffness)
+    bearings = pair.bearings
+    compliance = 1.0 / bearings.pinion.loa_stiffness + 1.0 / bearings.gear.loa_stiffness
+
+    def softer(xi: FloatArray) -> FloatArray:
+        return np.asarray(stiffness(xi) / (1.0 + compliance * total(xi)))
+
+    return with_law(pair, elements, fitted(softer, pair, elements), stiffness.interval)
 
 
 def with_peak(pair: GearPair, elements: MeshElements, shift: float) -> MeshElements:

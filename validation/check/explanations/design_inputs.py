@@ -127,16 +127,28 @@ def driving_gear(problem: Problem, variant: Variant) -> list[Choice]:
 
 
 def _constant_speed(problem: Problem, variant: Variant) -> list[Choice]:
-    """One gear at a constant speed: its inertia does not vibrate. The damper of the mesh stays."""
+    """One gear at a constant speed: its inertia does not vibrate.
 
-    def heavy(gear: str) -> Callable[[Variant], Variant]:
+    The damper of the mesh stays, or has the mass of the other gear alone.
+    """
+
+    def heavy(gear: str, *, dampers_stay: bool) -> Callable[[Variant], Variant]:
         def change(one: Variant) -> Variant:
             inertia = getattr(bodies_of(one.pair), f"inertia_{gear}") * _HEAVY
-            return with_dampers_of(one.pair, one.with_inputs({f"{gear}.inertia": inertia}))
+            heavier = one.with_inputs({f"{gear}.inertia": inertia})
+            return with_dampers_of(one.pair, heavier) if dampers_stay else heavier
 
         return change
 
-    return [Choice(f"the {gear}", f"a {gear} that turns at constant speed", heavy(gear)) for gear in GEARS]
+    return [
+        Choice(
+            f"the {gear}{ending}",
+            f"a {gear} that turns at constant speed{words}",
+            heavy(gear, dampers_stay=not ending),
+        )
+        for gear in GEARS
+        for ending, words in (("", ""), (", with its damper", ", with the mesh damper of such a mesh"))
+    ]
 
 
 def _static(problem: Problem, variant: Variant) -> list[Choice]:

@@ -29,6 +29,9 @@ Friction = Literal[
     "total load on the newest pair",
     "pitch point of the rack",
     "middle of the path",
+    "middle of the line of action",
+    "coefficient of the newest pair",
+    "coefficient of the leading pair",
     "line of the rack",
     "equal shares of the load",
     "static load",
@@ -107,7 +110,8 @@ def friction_over_path(
     with the sign that mu has on its side of that place.
 
     Equal shares of the load: mu K/(n k) with n pairs in contact. Line of the rack: the law of a line whose
-    pitch point is that of the rack. Natural logarithm: ln(10) mu, at most the bound of the pair.
+    pitch point is that of the rack. Natural logarithm: ln(10) mu, at most the bound of the pair. Coefficient
+    of the newest or the leading pair: mu at the place of that pair, for all pairs.
     """
     if course in STATIC_LOAD:
         return friction  # the load changes, not the coefficient
@@ -125,6 +129,10 @@ def friction_over_path(
     def changed(xi: FloatArray) -> FloatArray:
         if course == "without reversal":
             return np.abs(friction(xi))
+        if course == "coefficient of the newest pair":
+            return friction(low + np.mod(xi - low, pitch))
+        if course == "coefficient of the leading pair":
+            return friction(high - np.mod(high - xi, pitch))
         if course == "natural logarithm":
             most = max(pair.friction.maximum, float(np.abs(friction(xi)).max()))
             return np.asarray(np.clip(math.log(10.0) * friction(xi), -most, most))
@@ -144,7 +152,9 @@ def friction_over_path(
     by_load = course.startswith(("total", "equal"))
     laws = (friction, stiffness) if by_load else (friction,)
     marks = marks_of(pair, laws, low, high)
-    marks = np.append(marks, [change_of_pairs, pair.geometry.L_XP, *([] if reversal is None else [reversal])])
+    reach = int(np.ceil((high - low) / pitch))
+    of_others = pair.geometry.L_XP + np.arange(-reach, reach + 1) * pitch
+    marks = np.append(marks, [change_of_pairs, *of_others, *([] if reversal is None else [reversal])])
     marks = separate(marks, pair, low, high)
     size = float(np.abs(changed(np.linspace(low, high, 401)[1:-1])).max())
     breaks = np.concatenate([[low], marks, [high]])
@@ -163,4 +173,29 @@ def reversal_of(pair: GearPair, course: Friction, low: float, high: float) -> fl
     """
     if course == "pitch point of the rack":
         return pitch_point_of_rack(pair)
+    if course == "middle of the line of action":
+        return 0.5 * pair.geometry.L_XY
     return 0.5 * (low + high) if course == "middle of the path" else None
+
+
+def smoothed_friction(
+    pair: GearPair, friction: PathFunction, speed: float, shape: Literal["tanh", "ramp"]
+) -> PathFunction:
+    """Return the friction coefficient |mu| s(v/v_0) over xi, with s = tanh or a ramp from -1 to 1.
+
+    v is the sliding velocity with its sign, v_0 a share ``speed`` of its largest size on the path.
+    """
+    low, high = friction.interval
+    pitch_point = pair.geometry.L_XP
+    reach = speed * max(pitch_point - low, high - pitch_point)
+
+    def changed(xi: FloatArray) -> FloatArray:
+        sliding = (xi - pitch_point) / reach
+        size = np.tanh(sliding) if shape == "tanh" else np.clip(sliding, -1.0, 1.0)
+        return np.asarray(np.abs(friction(xi)) * size)
+
+    marks = np.append(friction.breaks, [pitch_point, pitch_point - reach, pitch_point + reach])
+    marks = separate(marks, pair, low, high)
+    size = float(np.abs(changed(np.linspace(low, high, 401)[1:-1])).max())
+    breaks = np.concatenate([[low], marks, [high]])
+    return PathFunction.fit(changed, breaks, marks, tolerance=TOLERANCE * max(size, 1e-300))

@@ -34,9 +34,21 @@ from validation.check.problem import Problem
 
 #: Trial factors of a stiffness or a load.
 _LOAD = (0.15, *NEAR, 6.0)
+#: Trial friction coefficients, and one below them from which the search counts.
+_COEFFICIENTS = (0.012, 0.03, 0.06, 0.12)
+_LEAST_COEFFICIENT = 0.004
 #: Trial steps of an integrator, and steps of 1 in a mesh cycle.
 _STEPS = (-2.0, -0.5, 0.5, 2.0, 6.0)
 _STEPS_PER_CYCLE = 500.0
+
+
+#: A frequency is that of another velocity, or of a table that repeats too early, up to these differences.
+#: Most rows of such a table.
+_SAME_VELOCITY = 1e-3
+#: A factor on the stiffness is 1 up to this share.
+_SAME_STIFFNESS = 5e-3
+_SAME_TABLE = 1.5e-4
+_MOST_ROWS = 64
 
 
 def _stiffness(pair: GearPair, value: float) -> Fields:
@@ -93,6 +105,33 @@ def _twice(problem: Problem, variant: Variant) -> list[Choice]:
 def _half(problem: Problem, variant: Variant) -> list[Choice]:
     words = "the compliance of both teeth counted twice: k times 0.5"
     return [choice(0.5, words, lambda pair: _stiffness(pair, 0.5))]
+
+
+def _stiffness_formulas(problem: Problem, variant: Variant) -> list[Choice]:
+    """Known mistakes in the stiffness of a tooth pair, each a factor."""
+    pair = variant.pair
+    ratio = 0.75 * pair.geometry.contact_ratio + 0.25
+    common = min(pair.pinion.face_width, pair.gear.face_width)
+    strain = 1.0 / (1.0 - pair.pinion.poisson_ratio**2)
+    factors = {
+        "mean mesh stiffness": (ratio, "the mean stiffness c_gamma of the mesh for each tooth pair"),
+        "c_gamma taken for c'": (1.0 / ratio, "a stiffness of each tooth pair divided by c_gamma/c'"),
+        "0.8 forgotten": (1.25, "the factor 0.8 of ISO 6336-1 forgotten: tooth pairs 1.25 times too stiff"),
+        "0.8 twice": (0.8, "the factor 0.8 of ISO 6336-1 counted twice: 0.8 times the stiffness"),
+        "plane strain": (strain, "plane strain, E/(1 - nu^2), in the stiffness of the tooth pairs"),
+        **{
+            f"width of the {gear}": (
+                getattr(pair, gear).face_width / common,
+                f"a stiffness of the tooth pairs by the face width of the {gear}",
+            )
+            for gear in GEARS
+        },
+    }
+    return [
+        choice(label, words, times(_stiffness, factor))
+        for label, (factor, words) in factors.items()
+        if abs(factor - 1.0) > _SAME_STIFFNESS
+    ]
 
 
 def _stiffness_models(problem: Problem, variant: Variant) -> list[Choice]:
@@ -184,6 +223,9 @@ def _damper_formulas(problem: Problem, variant: Variant) -> list[Choice]:
         / (bodies.mass_pinion + bodies.mass_gear),
         "mass of the pinion": bodies.inertia_pinion / g.base_radius_pinion**2,
         "mass of the gear": bodies.inertia_gear / g.base_radius_gear**2,
+        "mass of translation of the pinion": bodies.mass_pinion,
+        "mass of translation of the gear": bodies.mass_gear,
+        "sum of the masses of translation": bodies.mass_pinion + bodies.mass_gear,
     }
     factors = {
         "0.5": (0.5, "the damping of the mesh times 0.5: the factor 2 of 2 zeta sqrt(k m) forgotten"),
@@ -232,15 +274,30 @@ def _speed_of_gear(problem: Problem, variant: Variant) -> list[Choice]:
     if problem.curves.abscissa == "time":
         if not cause and abs(shown - 1.0) < 5e-3:
             return []
-        words = (
-            f"a motion at {shown:.4g} times the speed: {cause or 'the mesh frequency shows another speed'}"
-        )
+        cause = cause or "the mesh frequency shows another speed"
+        others = "".join(f", or {one}" for one in _other_frequencies(variant.pair, shown))
+        words = f"a motion at {shown:.4g} times the speed: {cause}{others}"
         return [choice(shown, words, lambda pair: _speed(pair, shown))]
     ratio = _ratio(variant.pair)
     turns = {math.pi / 30.0: "rpm taken for rad/s", 30.0 / math.pi: "rad/s taken for rpm"}
     if ratio != 1.0:
         turns |= {ratio: "the pinion's speed on the gear", 1.0 / ratio: "the gear's speed on the pinion"}
     return [choice(value, words, times(_speed, value)) for value, words in turns.items()]
+
+
+def _other_frequencies(pair: GearPair, factor: float) -> Iterator[str]:
+    """What else makes a mesh frequency near that of the pair: a table, or another velocity of the contact."""
+    cosine = math.cos(pair.geometry.operating_pressure_angle)
+    for value, words in (
+        (1.0 / cosine, "pitch line velocity"),
+        (cosine, "base line velocity times cos(alpha)"),
+    ):
+        if abs(factor / value - 1.0) < _SAME_VELOCITY:
+            yield f"contact that travels along the line of action with the {words}"
+    for rows in range(4, _MOST_ROWS):
+        for value, words in ((rows / (rows - 1), "early"), ((rows - 1) / rows, "late")):
+            if abs(factor - value) < _SAME_TABLE:
+                yield f"a table of {rows} rows over the mesh cycle that repeats one row too {words}"
 
 
 def _fixed() -> Iterator[Cause]:
@@ -281,17 +338,38 @@ def _fixed() -> Iterator[Cause]:
         "series stiffness of both teeth", "the stiffness of one tooth in place of two in series", "2", _twice
     )
     yield fixed_values("compliance counted twice", "the compliance of both teeth counted twice", "0.5", _half)
+    yield fixed_values(
+        "formula of the stiffness",
+        "a mistake in the stiffness of a tooth pair that is a factor",
+        "c_gamma for c', factor 0.8, plane strain, face width of one gear",
+        _stiffness_formulas,
+    )
     yield fixed_values("mesh damping left out", "no damping of the mesh", "left out", _no_mesh_damping)
     yield fixed_values(
         "formula of the mesh damper",
         "a mistake in 2 zeta sqrt(k m_e) of the mesh damper",
-        "factors 0.5 and 2, Hz for rad/s, masses of translation, mass of one gear",
+        "factors 0.5 and 2, Hz for rad/s, masses of translation, mass of one gear, their sum",
         _damper_formulas,
     )
 
 
+def _constant_friction(variant: Variant, value: float) -> Variant:
+    return variant.with_inputs({"friction.law": "coulomb", "friction.coefficient": value})
+
+
 def _free() -> Iterator[Cause]:
     """Causes with a free factor."""
+    yield Cause(
+        name="constant friction coefficient",
+        kind=Kind.INPUT,
+        meaning="one friction coefficient everywhere, in place of that of a law",
+        span=f"coefficient, about {_COEFFICIENTS[0]:g} to {_COEFFICIENTS[-1]:g}",
+        grid=_COEFFICIENTS,
+        neutral=_LEAST_COEFFICIENT,
+        change=_constant_friction,
+        words="the friction coefficient {value} everywhere, in place of that of a law",
+        applies=lambda problem, variant: variant.pair.friction.law not in ("none", "coulomb"),
+    )
     yield free_factor("mesh stiffness", "the stiffness of the tooth pairs", _LOAD, _stiffness)
     yield free_factor(
         "mesh damping",

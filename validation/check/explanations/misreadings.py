@@ -23,7 +23,7 @@ from validation.check.explanations.reading import (
     turning_channels,
 )
 from validation.check.problem import Problem
-from validation.check.quantities import GEARS, LINES, QUANTITIES, Quantity, quantity_of
+from validation.check.quantities import GEARS, LINES, PLACES, QUANTITIES, Quantity, quantity_of
 
 
 class UnitFactor(NamedTuple):
@@ -84,6 +84,8 @@ _QUARTER = 0.5 * math.pi
 _HIGH_PASS = (0.1, 0.3, 1.0, 3.0)
 #: Means that differ by this share of the static value.
 _OTHER_MEAN = 0.02
+#: Difference of the means of the transmission error that is half of the backlash, up to this share.
+_HALF_BACKLASH = 0.05
 _DELAY = (-0.15, -0.05, 0.05, 0.15)
 
 
@@ -294,12 +296,45 @@ def _mistaken(problem: Problem, kind: Quantity) -> Iterator[tuple[str, str, floa
         yield "the bearing force", f"bearing_force_{stem}", 1.0
     if name == "mesh_force":
         yield "the friction force", "friction", 1.0
+        for words, row in (("newest", _rows(problem) - 1), ("leading", 0)):
+            yield f"the load of the {words} tooth pair alone", f"normal_load in place {row}", 1.0
         if _perfect_and_prescribed(problem):
             yield "stiffness times deflection, without the dampers", "mesh force of the springs", 1.0
     if name == "normal_load":
         yield "the mesh force in equal shares", "equal share of the load", 1.0
+        yield "the whole mesh force", "whole load of the mesh", 1.0
+        yield "the share of the momentary mesh force, times the static one", "share of the static load", 1.0
+        yield "the load times its share of the mesh force once more", "load times its share", 1.0
+        yield "the friction force", "friction_force", 1.0
+    if name == "friction_force":
+        yield "the normal load", "normal_load", 1.0
+    if name == "friction":
+        yield "the sum of the sizes, without signs,", "friction without signs", 1.0
+        yield "the mesh force", "mesh_force", 1.0
+        yield "the friction of the newest pair alone", f"friction_force in place {_rows(problem) - 1}", 1.0
     if name.startswith("mesh_torque"):
         yield "the mesh force", "mesh_force", 1.0
+
+
+def _rows(problem: Problem) -> int:
+    """Number of places of tooth pairs at one time; the pair ahead is first."""
+    return int(problem.motion.motion["normal_load"].shape[0])
+
+
+def _places(problem: Problem, variant: Variant) -> list[Choice]:
+    """Channels of tooth pairs that show a place of the mesh, which another pair takes in every mesh cycle."""
+    rows = _rows(problem)
+    names = [one.name for one in problem.curves.channels if one.kind.of_tooth_pair]
+    if not names or variant.reading.places or rows > PLACES:
+        return []
+    return [
+        _reading(
+            label,
+            f"places of the mesh in the channels of tooth pairs, {label}, not the same pair all the time",
+            partial(replace, places=label),
+        )
+        for label in ("newest pair first", "leading pair first")
+    ]
 
 
 def _perfect_and_prescribed(problem: Problem) -> bool:
@@ -344,12 +379,24 @@ def _offsets(problem: Problem, variant: Variant) -> list[Choice]:
     def without_means(names: Sequence[str]) -> Callable[[Reading], Reading]:
         return lambda reading: reading.with_offsets(names)
 
-    return [
+    half = 0.5 * problem.pair.mesh.backlash
+    dead_zone = [
+        _reading(
+            f"{row.channel.channel.name}: half of the backlash",
+            "a dead zone of the backlash about zero, so that teeth touch at half of the backlash",
+            without_means((row.channel.channel.name,)),
+        )
+        for row in problem.misfit.channels
+        if row.channel.channel.name in differing and row.channel.channel.quantity == "dte"
+        if abs(abs(row.channel.orders.mean - row.ours.mean) - half) < _HALF_BACKLASH * half
+    ]
+    explained = {"dte"} if dead_zone else set()
+    return dead_zone + [
         _reading(words, f"another zero of {words}: the means differ", without_means(names))._replace(
             vague=True
         )
         for words, names in _groups(problem).items()
-        if differing & {*names}
+        if differing & {*names} and not explained & {*names}
     ]
 
 
@@ -396,8 +443,10 @@ def causes_of_channels(problem: Problem) -> list[Cause]:
     def late(names: Sequence[str]) -> Callable[[Variant, float], Variant]:
         return lambda variant, value: variant.with_reading(variant.reading.with_delay(names, value))
 
-    def filtered(names: Sequence[str]) -> Callable[[Variant, float], Variant]:
-        return lambda variant, value: variant.with_reading(variant.reading.with_filter(names, value))
+    def filtered(names: Sequence[str], *, second: bool) -> Callable[[Variant, float], Variant]:
+        return lambda variant, value: variant.with_reading(
+            variant.reading.with_filter(names, value, second=second)
+        )
 
     def of_group(cause: Cause, words: str, change: Callable[[Variant, float], Variant], part: str) -> Cause:
         return replace(cause, words=words, change=change, applies=lambda problem, variant: True, part=part)
@@ -411,11 +460,12 @@ def causes_of_channels(problem: Problem) -> list[Cause]:
         *(
             of_group(
                 FILTER,
-                f"a low-pass filter of second order of {words} alone, at {{value}} mesh orders",
-                filtered(names),
-                words,
+                f"a low-pass filter of {order} order of {words} alone, at {{value}} mesh orders",
+                filtered(names, second=order == "second"),
+                f"{words}, {order} order",
             )
             for words, names in some.items()
+            for order in ("second", "first")
         ),
     ]
 
@@ -445,12 +495,22 @@ DELAY = Cause(
 FILTER = Cause(
     name="filter of a channel",
     kind=Kind.READING,
-    meaning="one channel, or a family of channels, through a low-pass filter of second order",
+    meaning="one channel, or a family of channels, through a low-pass filter of first or second order",
     span="cutoff at 0.5 to 8 mesh orders and above",
     grid=_TIME_CONSTANT,
     neutral=0.0,
     shown=lambda value: 1.0 / max(value, 1e-300),
     applies=lambda problem, variant: False,
+)
+
+
+#: Values of few digits. They agree at every order, so that no step of a ladder finds them:
+#: ``validation.check.digits`` does.
+FEW_DIGITS = Cause(
+    name="few digits",
+    kind=Kind.READING,
+    meaning="a channel in few digits, such as angles in single precision: it agrees, and its samples scatter",
+    span="scatter above twice the limit",
 )
 
 
@@ -483,7 +543,16 @@ def _causes() -> Iterator[Cause]:
         _other_quantities,
     )
     yield read(
-        "zero of a channel", "a channel, or a family of channels, with another zero", "offset", _offsets
+        "places of tooth pairs",
+        "channels of tooth pairs that show a place of the mesh, not one pair",
+        "newest pair first, leading pair first",
+        _places,
+    )
+    yield read(
+        "zero of a channel",
+        "a channel, or a family of channels, with another zero",
+        "offset; half of the backlash",
+        _offsets,
     )
     yield read("time reversed", "time that runs backwards", "reversed", _reversed)
     yield read("wrong phase", "another phase than the stated one", "searched", _phase)
@@ -520,6 +589,17 @@ def _causes() -> Iterator[Cause]:
         neutral=0.0,
         change=lambda variant, value: variant.with_reading(replace(variant.reading, second_order=value)),
         words="a low-pass filter of second order at {value} mesh orders",
+        shown=lambda value: 1.0 / max(value, 1e-300),
+    )
+    yield Cause(
+        name="low-pass filter of fourth order",
+        kind=Kind.READING,
+        meaning="all channels through a low-pass filter of fourth order, as of Butterworth",
+        span="cutoff at 0.5 to 8 mesh orders and above",
+        grid=_TIME_CONSTANT,
+        neutral=0.0,
+        change=lambda variant, value: variant.with_reading(replace(variant.reading, fourth_order=value)),
+        words="a low-pass filter of fourth order at {value} mesh orders",
         shown=lambda value: 1.0 / max(value, 1e-300),
     )
     yield Cause(
@@ -576,6 +656,7 @@ def _causes() -> Iterator[Cause]:
     )
     yield DELAY
     yield FILTER
+    yield FEW_DIGITS
 
 
 #: Causes that change the reading of the curves.

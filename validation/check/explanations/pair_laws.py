@@ -39,6 +39,8 @@ Stiffness = Literal[
     "five harmonics",
     "two levels",
 ]
+#: Excitation of a mesh with constant stiffness.
+Excitation = Literal["", "static error", "stiffness as a force"]
 #: Fit error of an altered law over its largest value.
 TOLERANCE = 1e-7
 #: Positions closer than this share of the base pitch are one.
@@ -186,6 +188,38 @@ def static_error(
     force = pair.operating.pinion_torque / pair.geometry.base_radius_pinion
     total = total_of_pairs(pair, stiffness)
     return lambda xi: np.asarray(factor * force / total(xi))
+
+
+def with_late_force(pair: GearPair, elements: MeshElements, delay: float) -> MeshElements:
+    """Return element laws whose force comes late by mesh cycles: a damper c - h k with the delay h [s].
+
+    N(t - h) = k delta - h k delta' + c delta' in first order of h, as with the force of the last step.
+    """
+    late = delay * pair.geometry.mesh_period
+
+    def damping(xi: FloatArray) -> FloatArray:
+        return np.asarray(elements.damping(xi) - late * elements.stiffness(xi))
+
+    return replace(elements, damping=fitted(damping, pair, elements))
+
+
+def with_excitation(pair: GearPair, elements: MeshElements, excitation: Excitation) -> MeshElements:
+    """Return element laws with a constant mesh stiffness that a transmission error excites.
+
+    static error: e = F/K - F/mean K. stiffness as a force: (K - mean K) F/mean K as a force, so that
+    e = -(K - mean K) F/(mean K)^2.
+    """
+    stiffness = elements.stiffness
+    force = pair.operating.pinion_torque / pair.geometry.base_radius_pinion
+    mean = mean_of_pairs(stiffness, pair.geometry.base_pitch)
+    total = total_of_pairs(pair, stiffness)
+
+    def error(xi: FloatArray) -> FloatArray:
+        if excitation == "static error":
+            return np.asarray(force / total(xi) - force / mean)
+        return np.asarray(-(total(xi) - mean) * force / mean**2)
+
+    return with_error(pair, with_stiffness(pair, elements, "constant"), error)
 
 
 def with_lag(pair: GearPair, elements: MeshElements, lag: float) -> MeshElements:

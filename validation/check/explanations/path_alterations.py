@@ -22,7 +22,10 @@ _ENDS = (-0.6, -0.3, -0.1, 0.1, 0.3, 0.6)
 #: Trial places of the peak of a parabola over half the path.
 _PEAKS = (-0.5, -0.2, 0.2, 0.5)
 #: Entries of a table of the mesh stiffness over the mesh cycle; negative: steps.
-_TABLES = (4, 5, 6, 8, 9, 10, 12, 15, 16, 20, -8, -10, -12, -16, -20, -24, -36)
+_TABLES = (4, 5, 6, 8, 9, 10, 12, 15, 16, 20, -8, -10, -12, -16, -20, -24, -30, -36)
+_SPLINES = (8, 10, 12, 16, 20, 24)
+#: Trial compliances in series with a tooth pair, over that of the mean stiffness of a pair.
+_SERIES = (-0.4, -0.2, 0.2, 0.5, 1.0)
 #: A path of contact is another one from this share of the base pitch on.
 _APART = 5e-3
 
@@ -141,18 +144,63 @@ def _tables(problem: Problem, variant: Variant) -> list[Choice]:
     if not may_vary(problem, variant):
         return []
 
-    def change(entries: int) -> Callable[[Variant], Variant]:
-        return lambda one: one.with_physics(table=entries)
+    def change(entries: int, spline: bool = False) -> Callable[[Variant], Variant]:
+        return lambda one: one.with_physics(table=entries, spline=spline)
 
-    return [
+    words = "a table of {} entries of the mesh stiffness over the mesh cycle, "
+    choices = [
         _changed(
             entries,
-            f"a table of {abs(entries)} entries of the mesh stiffness over the mesh cycle, "
+            words.format(abs(entries))
             + ("joined by straight lines" if entries > 0 else "without interpolation"),
             change(entries),
         )
         for entries in _TABLES
     ]
+    choices += [
+        _changed(
+            f"{entries}, spline", words.format(entries) + "joined by a cubic spline", change(entries, True)
+        )
+        for entries in _SPLINES
+    ]
+    return choices
+
+
+def _pairs_at_most(problem: Problem, variant: Variant) -> list[Choice]:
+    """Fewer tooth pairs than touch, or a last pair that stays too long."""
+    if not may_vary(problem, variant):
+        return []
+
+    def change(most: int) -> Callable[[Variant], Variant]:
+        return lambda one: one.with_physics(most_pairs=most)
+
+    texts = {1: "one tooth pair", 2: "two tooth pairs", 3: "three tooth pairs"}
+    ratio = variant.pair.geometry.contact_ratio
+    choices = [
+        _changed(
+            f"{which} {count}", f"{texts[count]} at most that carry load, the {which}", change(sign * count)
+        )
+        for count in texts
+        if count < ratio
+        for which, sign in (("newest", 1), ("oldest", -1))
+    ]
+    if math.ceil(ratio) - ratio > _APART:
+        words = "a tooth pair that keeps its last stiffness behind D, up to the next whole mesh cycle"
+        choices.append(_changed("last one held", words, lambda one: one.with_physics(last_value_held=True)))
+    return choices
+
+
+def _bearings_in_series(problem: Problem, variant: Variant) -> list[Choice]:
+    """The compliance of the bearings counted twice, in the mesh stiffness too."""
+    if not may_vary(problem, variant) or variant.pair.shafts is not None:
+        return []
+    words = "a mesh stiffness with the compliance of the bearings in it, which stands beside it once more"
+    return [_changed("in series", words, lambda one: one.with_physics(bearings_in_series=True))]
+
+
+def _takes_series(problem: Problem, variant: Variant) -> bool:
+    """Whether a compliance in series differs from a factor on the stiffness."""
+    return may_vary(problem, variant) and variant.pair.mesh.stiffness.model != "rectangular"
 
 
 def _is_parabola(problem: Problem, variant: Variant) -> bool:
@@ -210,15 +258,27 @@ def _causes() -> Iterator[Cause]:
     )
     yield fixed(
         "parts of the compliance",
-        "a part of the compliance of the energy method left out, halved or doubled",
-        "bending, shear, compression, foundation, contact (0, 0.5, 2); one tooth",
+        "a part of the compliance of the energy method left out, or times a factor",
+        "bending, shear, compression, foundation, contact (0, 0.25, 0.5, 2, 4); one tooth",
         _parts,
     )
     yield fixed(
         "table of the stiffness",
         "a table of the mesh stiffness that is too coarse",
-        f"{min(map(abs, _TABLES))} to {max(map(abs, _TABLES))} entries a mesh cycle; lines, steps",
+        f"{min(map(abs, _TABLES))} to {max(map(abs, _TABLES))} entries a mesh cycle; lines, steps, splines",
         _tables,
+    )
+    yield fixed(
+        "number of pairs that carry",
+        "fewer tooth pairs that carry load than touch, or a last one that stays too long",
+        "one, two or three at most: the newest, the oldest; last one held",
+        _pairs_at_most,
+    )
+    yield fixed(
+        "bearings in the mesh stiffness",
+        "a mesh stiffness that has the compliance of the bearings in it",
+        "in series",
+        _bearings_in_series,
     )
     yield fixed(
         "peak at the pitch point",
@@ -233,6 +293,14 @@ def _causes() -> Iterator[Cause]:
         _PEAKS,
         lambda variant, value: variant.with_physics(peak=value),
         _is_parabola,
+    )
+    yield free(
+        "compliance in series",
+        "a further compliance of each tooth pair, over that of its mean stiffness",
+        f"about {_SERIES[0]:g} to {_SERIES[-1]:g}",
+        _SERIES,
+        lambda variant, value: variant.with_physics(series=value),
+        _takes_series,
     )
     yield free(
         "contact ratio",

@@ -36,11 +36,17 @@ from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 from validation.check.explanations.contact_laws import (
     Compliance,
+    with_bearings_in_series,
     with_compliance,
+    with_compliance_in_series,
+    with_fewer_pairs,
+    with_last_value_held,
     with_path,
     with_peak,
     with_table,
 )
+from validation.check.explanations.contact_motion import ContactForce, contact_motion
+from validation.check.explanations.error_laws import CommonError, with_common_error, with_relief_signs
 from validation.check.explanations.friction_courses import (
     STATIC_LOAD,
     EqualStaticFriction,
@@ -48,17 +54,22 @@ from validation.check.explanations.friction_courses import (
     StaticFriction,
     friction_over_path,
     shifted_friction,
+    smoothed_friction,
     static_friction,
 )
+from validation.check.explanations.friction_inputs import FrictionInput, with_friction_input
 from validation.check.explanations.pair_laws import (
     Damper,
+    Excitation,
     Stiffness,
     damper_factor,
     fitted,
     static_error,
     wave_error,
     with_error,
+    with_excitation,
     with_lag,
+    with_late_force,
     with_ramps,
     with_shape,
     with_smoothing,
@@ -70,6 +81,7 @@ from validation.check.reference import lumped_motion
 
 #: Samples in a mesh cycle of an altered motion.
 _SAMPLES = 512
+_SAMPLES_OF_CONTACT = 256
 #: Altered equations whose linear motion grows by more than this factor in a mesh cycle have no motion.
 _GROWS = 1.2
 
@@ -123,6 +135,8 @@ class Physics:
     path_shift : base pitches by which the path of contact lies further along its line, for friction and its
         lever arms
     course : course of the friction over the path of contact
+    friction_input : value that the friction law reads wrongly
+    tanh, ramp : friction that is smoothed by a tanh or a ramp, over a share of the largest sliding velocity
     radius : factor on the base radii as lever arms of the mesh force and in the transmission error
     damper : law of the dampers of the teeth
     proportional_bearings : whether dampers of bearings are to their stiffness as that of the mesh to its mean
@@ -139,6 +153,16 @@ class Physics:
     smoothing : window of a moving average of the stiffness of the whole mesh [mesh cycles]
     error_cosine, error_sine : amplitudes of a profile error of all teeth at the mesh frequency, from A on [m]
     static_error : factor with which the static deflection of the mesh is an error of all teeth
+    relief_pinion, relief_gear : factors on the relief of each gear in the error of the teeth
+    common_error : one error for all tooth pairs in contact
+    spline : whether the table of the stiffness is joined by a cubic spline
+    most_pairs : most tooth pairs that carry load, the newest; negative: the oldest; 0: all
+    last_value_held : whether the stiffness stays as at D up to the next whole mesh cycle
+    series : constant compliance in series with each pair, over that of the mean stiffness of a pair
+    bearings_in_series : whether the mesh stiffness has the bearings in it
+    excitation : a constant mesh stiffness that a transmission error excites
+    late_force : mesh cycles by which the forces of the teeth come late
+    contact : another contact force
     bearings : "rigid" and the like: without these translations, bearings carry the mesh force; "left out": a
         torsional model
     """
@@ -156,6 +180,9 @@ class Physics:
     mass_damping: float = 0.0
     path_shift: float = 0.0
     course: Friction = ""
+    friction_input: FrictionInput = ""
+    tanh: float = 0.0
+    ramp: float = 0.0
     radius: float = 1.0
     damper: Damper = "of each pair"
     proportional_bearings: bool = False
@@ -174,6 +201,17 @@ class Physics:
     error_cosine: float = 0.0
     error_sine: float = 0.0
     static_error: float = 0.0
+    relief_pinion: float = 1.0
+    relief_gear: float = 1.0
+    common_error: CommonError = ""
+    spline: bool = False
+    most_pairs: int = 0
+    last_value_held: bool = False
+    series: float = 0.0
+    bearings_in_series: bool = False
+    excitation: Excitation = ""
+    late_force: float = 0.0
+    contact: ContactForce = ""
     bearings: Bearings = "elastic"
 
     @property
@@ -209,8 +247,13 @@ _OF_STIFFNESS = (
     "table",
     "compliance",
     "peak",
+    "most_pairs",
+    "last_value_held",
+    "series",
+    "bearings_in_series",
+    "excitation",
 )
-_OF_ERROR = ("error_cosine", "error_sine", "static_error")
+_OF_ERROR = ("error_cosine", "error_sine", "static_error", "relief_pinion", "relief_gear", "common_error")
 _OF_EQUATIONS = (
     "moment_pinion",
     "moment_gear",
@@ -258,14 +301,22 @@ def motion_of(
         raise NumericalError("A further error of all teeth needs prescribed contact.")
     if physics.of_stiffness and not prescribed:
         raise NumericalError("A stiffness over the mesh cycle needs prescribed contact.")
+    if physics.contact and not (prescribed and pair.shafts is None and physics.bearings == "elastic"):
+        raise NumericalError("Another contact force needs prescribed contact and springs.")
     again = recurrence or pair.pinion.teeth
     system = altered_system(pair, physics)
+    if physics.contact:
+        return MotionCurves(
+            pair, contact_motion(system, physics.contact, provenance(pair), _SAMPLES_OF_CONTACT), 1, again
+        )
     if physics.pulling or prescribed:
         linear = _linear_motion(system, physics)
         if linear is not None:
             return MotionCurves(pair, linear, 1, again)
     if physics.pulling:
         raise NumericalError("The linear motion is unstable.")
+    if physics.late_force:
+        raise NumericalError("Forces that come late make the motion unstable, or teeth part.")
     if physics.course in STATIC_LOAD:
         raise NumericalError("Friction by the static load needs prescribed contact that is not lost.")
     if physics.of_equations:
@@ -387,9 +438,23 @@ def altered_elements(pair: GearPair, physics: Physics) -> MeshElements:
     if physics.smoothing > 0.0:
         elements = with_smoothing(pair, elements, physics.smoothing)
     if physics.table:
-        elements = with_table(pair, elements, physics.table)
+        elements = with_table(pair, elements, physics.table, spline=physics.spline)
+    if physics.most_pairs:
+        elements = with_fewer_pairs(pair, elements, physics.most_pairs)
+    if physics.last_value_held:
+        elements = with_last_value_held(pair, elements)
+    if physics.series:
+        elements = with_compliance_in_series(pair, elements, physics.series)
+    if physics.bearings_in_series:
+        elements = with_bearings_in_series(pair, elements)
+    if physics.excitation:
+        elements = with_excitation(pair, elements, physics.excitation)
     if physics.lag:
         elements = with_lag(pair, elements, physics.lag)
+    if (physics.relief_pinion, physics.relief_gear) != (1.0, 1.0):
+        elements = with_relief_signs(pair, elements, physics.relief_pinion, physics.relief_gear)
+    if physics.common_error:
+        elements = with_common_error(pair, elements, physics.common_error)
     if physics.error_cosine or physics.error_sine:
         elements = with_error(pair, elements, wave_error(pair, physics.error_cosine, physics.error_sine))
     if physics.static_error:
@@ -398,6 +463,8 @@ def altered_elements(pair: GearPair, physics: Physics) -> MeshElements:
         factor = damper_factor(pair, elements, physics.damper)
         damping = fitted(lambda xi: elements.damping(xi) * factor(xi), pair, elements)
         elements = replace(elements, damping=damping)
+    if physics.late_force:
+        elements = with_late_force(pair, elements, physics.late_force)
     friction = altered_friction(pair, elements.friction, elements.stiffness, physics)
     return replace(elements, friction=friction)
 
@@ -406,10 +473,16 @@ def altered_friction(
     pair: GearPair, friction: PathFunction, stiffness: PathFunction, physics: Physics
 ) -> PathFunction:
     """Return the friction coefficient over xi with alterations of its size and of its course."""
+    if physics.friction_input:
+        friction = with_friction_input(pair, friction, physics.friction_input)
     if physics.path_shift:
         friction = shifted_friction(pair, friction, physics.path_shift * pair.geometry.base_pitch)
     if physics.course:
         friction = friction_over_path(pair, friction, stiffness, physics.course)
+    if physics.tanh > 0.0:
+        friction = smoothed_friction(pair, friction, physics.tanh, "tanh")
+    if physics.ramp > 0.0:
+        friction = smoothed_friction(pair, friction, physics.ramp, "ramp")
     return friction if physics.friction == 1.0 else friction.scaled(physics.friction)
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,10 +22,15 @@ from lumped.typing import ComplexArray, FloatArray
 from validation.check.curve_orders import ChannelOrders, orders_of_channel, without_ramp
 from validation.check.curves import Channel, Curves
 from validation.check.problem import Problem
+from validation.check.quantities import PAIR_LABELS, PLACES
 from validation.signals.complex_orders import ComplexOrders
 
 #: Channel -> factor, delay or quantity, as sorted pairs, so that a reading can be a key.
 ByChannel = tuple[tuple[str, float], ...]
+#: Which pair has the first place.
+Places = Literal["", "newest pair first", "leading pair first"]
+#: Factors of the sections of a Butterworth filter of fourth order.
+_FOURTH_ORDER = (2.0 * math.cos(math.pi / 8.0), 2.0 * math.sin(math.pi / 8.0))
 
 
 @dataclass(frozen=True)
@@ -36,6 +41,7 @@ class Reading:
     ----------
     factors : channel -> factor that its values have too much
     quantities : channel -> quantity that it holds in place of its own
+    places : which place of the mesh the first channel of tooth pairs shows; empty: channels follow a pair
     delays : channel -> delay against the other channels [mesh cycles]
     reversed : whether the time runs backwards
     offsets : channels with another zero, whose means are not compared
@@ -43,7 +49,9 @@ class Reading:
     both_ways : of a low-pass filter of second order that runs forward and backward, 1 over the mesh order of
         its cutoff
     second_order : of a low-pass filter of second order of all channels, 1 over the mesh order of its cutoff
-    filters : channel -> the same, of a filter of this channel alone
+    fourth_order : the same, of fourth order
+    filters : channel -> the same, of a filter of second order of this channel alone
+    first_filters : channel -> the same, of first order
     high_pass : mesh order of the cutoff of a high-pass filter of first order of all channels
     window : of a moving average of all channels [mesh cycles]
     most_orders : largest mesh order that the curves have; 0: all of them
@@ -56,13 +64,16 @@ class Reading:
 
     factors: ByChannel = ()
     quantities: tuple[tuple[str, str], ...] = ()
+    places: Places = ""
     delays: ByChannel = ()
     reversed: bool = False
     offsets: tuple[str, ...] = ()
     time_constant: float = 0.0
     both_ways: float = 0.0
     second_order: float = 0.0
+    fourth_order: float = 0.0
     filters: ByChannel = ()
+    first_filters: ByChannel = ()
     high_pass: float = 0.0
     window: float = 0.0
     most_orders: int = 0
@@ -91,10 +102,30 @@ class Reading:
         delays = dict(self.delays) | dict.fromkeys(channels, delay)
         return replace(self, delays=tuple(sorted(delays.items())))
 
-    def with_filter(self, channels: Iterable[str], time_constant: float) -> Reading:
-        """Return the reading with a low-pass filter of second order of channels alone."""
-        filters = dict(self.filters) | dict.fromkeys(channels, time_constant)
-        return replace(self, filters=tuple(sorted(filters.items())))
+    def with_filter(self, channels: Iterable[str], time_constant: float, *, second: bool = True) -> Reading:
+        """Return the reading with a low-pass filter of channels alone, of second or of first order."""
+        field = "filters" if second else "first_filters"
+        filters = dict(getattr(self, field)) | dict.fromkeys(channels, time_constant)
+        changed: dict[str, Any] = {field: tuple(sorted(filters.items()))}
+        return replace(self, **changed)
+
+
+def quantities_by_place(problem: Problem, reading: Reading) -> dict[str, str]:
+    """Return the quantity of each channel of a tooth pair that shows a place of the mesh.
+
+    Our motion has the pair ahead first. The first label, A, is the first place of the other model.
+    """
+    if not reading.places:
+        return {}
+    rows = int(problem.motion.motion["normal_load"].shape[0])
+    result = {}
+    for channel in problem.curves.channels:
+        if channel.tooth_pair is None:
+            continue
+        place = PAIR_LABELS.index(channel.tooth_pair)
+        row = place if reading.places == "leading pair first" else rows - 1 - place
+        result[channel.name] = f"{channel.quantity} in place {row % PLACES}"
+    return result
 
 
 #: The curves as they are.
@@ -104,9 +135,9 @@ AS_THEY_ARE = Reading()
 def read(problem: Problem, reading: Reading) -> tuple[ChannelOrders, ...]:
     """Return the channels of a problem by their orders, in a reading."""
     factors = dict(reading.factors)
-    quantities = dict(reading.quantities)
+    quantities = quantities_by_place(problem, reading) | dict(reading.quantities)
     delays = dict(reading.delays)
-    filters = dict(reading.filters)
+    filters, first_filters = dict(reading.filters), dict(reading.first_filters)
     result = []
     for one in _in_our_axes(_channels(problem, reading), reading):
         channel = one.channel
@@ -117,26 +148,32 @@ def read(problem: Problem, reading: Reading) -> tuple[ChannelOrders, ...]:
             orders = replace(orders, values=orders.values.conj())
         channel = replace(channel, quantity=quantities.get(channel.name, channel.quantity))
         offset = channel.name in reading.offsets
-        gains = _gains(reading, orders.orders, filters.get(channel.name, 0.0))
+        own = filters.get(channel.name, 0.0), first_filters.get(channel.name, 0.0)
+        gains = _gains(reading, orders.orders, *own)
         result.append(ChannelOrders(channel, orders, gains=gains, offset=offset))
     return tuple(result)
 
 
-def _gains(reading: Reading, orders: FloatArray, own: float) -> ComplexArray | None:
+def _gains(reading: Reading, orders: FloatArray, own: float, own_first: float) -> ComplexArray | None:
     """Gains of the filters of a reading, and of a channel of its own, at mesh orders; None: no filter.
 
     A low-pass filter of first order has 1/(1 + i m tau), a moving average over w cycles sin(pi m w)/(pi m w),
-    a Butterworth filter of second order 1/(1 + i sqrt(2) m tau - (m tau)^2), both ways 1/(1 + (m tau)^4), a
-    high-pass filter i m/(i m + c).
+    a Butterworth filter of second order 1/(1 + i sqrt(2) m tau - (m tau)^2), of fourth order the product of
+    two such with 2 cos(pi/8) and 2 sin(pi/8) for sqrt(2), both ways 1/(1 + (m tau)^4), a high-pass filter
+    i m/(i m + c).
     """
     second = (max(reading.second_order, 0.0), max(own, 0.0))
-    filters = (reading.time_constant, reading.window, reading.both_ways, reading.high_pass, *second)
-    if max(filters) <= 0.0 and reading.most_orders == 0:
+    fourth = max(reading.fourth_order, 0.0)
+    filters = (reading.time_constant, reading.window, reading.both_ways, reading.high_pass, *second, fourth)
+    if max(*filters, own_first) <= 0.0 and reading.most_orders == 0:
         return None
     gains = np.sinc(orders * reading.window) / (1.0 + 1j * orders * reading.time_constant)
+    gains = gains / (1.0 + 1j * orders * max(own_first, 0.0))
     gains = gains / (1.0 + (orders * reading.both_ways) ** 4)
     for constant in second:
         gains = gains / (1.0 + 1j * math.sqrt(2.0) * orders * constant - (orders * constant) ** 2)
+    for damping in _FOURTH_ORDER:
+        gains = gains / (1.0 + 1j * damping * orders * fourth - (orders * fourth) ** 2)
     gains = gains * 1j * orders / (1j * orders + max(reading.high_pass, 0.0))
     if reading.most_orders:
         gains = np.where(orders <= reading.most_orders + 1e-9, gains, 0.0)

@@ -1,7 +1,7 @@
 """The registry of explanations by name: readings of the curves, alterations of the equations, inputs.
 
 A further explanation is an entry of ``OF_READING``, ``OF_PAIR``, ``OF_BODIES``, ``OF_GEOMETRY``,
-``OF_DESIGN``, ``OF_SURFACE``, ``OF_PATH`` or ``OF_MODEL``, a row of the table in
+``OF_DESIGN``, ``OF_SURFACE``, ``OF_RELIEF``, ``OF_PATH`` or ``OF_MODEL``, a row of the table in
 docs/how_to/check_your_model.md and a case in tests/validation/check/test_explanations.py.
 """
 
@@ -18,6 +18,7 @@ from validation.check.explanations.geometry_inputs import OF_GEOMETRY
 from validation.check.explanations.inputs import OF_PAIR
 from validation.check.explanations.misreadings import OF_READING
 from validation.check.explanations.path_alterations import OF_PATH
+from validation.check.explanations.relief_inputs import OF_RELIEF
 from validation.check.explanations.surface_inputs import OF_SURFACE
 
 #: Name -> cause, the cheapest first: a reading costs no motion.
@@ -31,6 +32,7 @@ EXPLANATIONS: Mapping[str, Cause] = MappingProxyType(
             *OF_GEOMETRY,
             *OF_DESIGN,
             *OF_SURFACE,
+            *OF_RELIEF,
             *OF_PATH,
             *OF_MODEL,
         )

@@ -21,6 +21,8 @@ _GEARS = ("pinion", "gear")
 #: Trial factors of a viscosity, of a roughness, of the length of a relief, of deviations.
 _VISCOSITY = (0.05, 0.3, 3.0, 20.0)
 _ROUGHNESS = (0.2, 0.5, 2.0, 5.0)
+#: Rz over Ra of usual flanks.
+_RZ_OVER_RA = (4.0, 5.0, 6.0, 7.0)
 _RELIEF_LENGTH = (0.5, 0.75, 1.33, 2.0)
 _DEVIATIONS = (0.5, 2.0)
 #: Trial factors of the end ratio of a parabola.
@@ -67,6 +69,24 @@ def _roughness(variant: Variant, value: float) -> Variant:
             for gear in _GEARS
         }
     )
+
+
+def _rz_for_ra(problem: Problem, variant: Variant) -> list[Choice]:
+    """The roughness Rz where Ra is wanted, or the reverse."""
+    if "pinion.roughness" not in fields_read(variant.pair):
+        return []
+
+    def change(factor: float) -> Callable[[Variant], Variant]:
+        return lambda one: _roughness(one, factor)
+
+    return [
+        Choice(f"{label} {ratio:g}", f"the roughness {words}, with Rz/Ra of {ratio:g}", change(factor))
+        for ratio in _RZ_OVER_RA
+        for label, words, factor in (
+            ("Rz for Ra", "Rz in place of Ra", ratio),
+            ("Ra for Rz", "Ra divided as if it were Rz", 1.0 / ratio),
+        )
+    ]
 
 
 def _with_torque(pair: GearPair, factor: float) -> dict[str, Any]:
@@ -118,7 +138,7 @@ def _without_some_relief(problem: Problem, variant: Variant) -> list[Choice]:
     ]
 
 
-def _tip_relief(pair: GearPair, gear: str) -> dict[str, Any]:
+def tip_relief(pair: GearPair, gear: str) -> dict[str, Any]:
     """The tip relief of a gear, with its length along the line of action [mm]."""
     g = pair.geometry
     tip, base = getattr(g, f"tip_radius_{gear}"), getattr(g, f"base_radius_{gear}")
@@ -131,31 +151,31 @@ def _tip_relief(pair: GearPair, gear: str) -> dict[str, Any]:
     }
 
 
-def _relieved_tips(pair: GearPair) -> list[str]:
+def relieved_tips(pair: GearPair) -> list[str]:
     return [gear for gear in _GEARS if getattr(pair, gear).tip_relief is not None]
 
 
 def _relief_length(variant: Variant, value: float) -> Variant:
     """The length of the tip relief of each gear times a factor."""
     fields: dict[str, Any] = {}
-    for gear in _relieved_tips(variant.pair):
-        relief = _tip_relief(variant.pair, gear)
+    for gear in relieved_tips(variant.pair):
+        relief = tip_relief(variant.pair, gear)
         fields[f"{gear}.tip_relief"] = relief | {"length": relief["length"] * value}
     return variant.with_inputs(fields)
 
 
 def _relief_shape(problem: Problem, variant: Variant) -> list[Choice]:
     """Linear relief in place of parabolic relief, or the reverse."""
-    tips = _relieved_tips(variant.pair)
+    tips = relieved_tips(variant.pair)
     if not tips or variant.pair.mesh.relief == "ignored":
         return []
     shape = getattr(variant.pair, tips[0]).tip_relief.shape
     other = "parabolic" if shape == "linear" else "linear"
 
     def change(one: Variant) -> Variant:
-        relieved = _relieved_tips(one.pair)
+        relieved = relieved_tips(one.pair)
         return one.with_inputs(
-            {f"{gear}.tip_relief": _tip_relief(one.pair, gear) | {"shape": other} for gear in relieved}
+            {f"{gear}.tip_relief": tip_relief(one.pair, gear) | {"shape": other} for gear in relieved}
         )
 
     return [Choice(other, f"{other} tip relief in place of {shape} tip relief", change)]
@@ -163,7 +183,7 @@ def _relief_shape(problem: Problem, variant: Variant) -> list[Choice]:
 
 def _acts(problem: Problem, variant: Variant) -> bool:
     """Whether a tip relief acts."""
-    return variant.pair.mesh.relief != "ignored" and bool(_relieved_tips(variant.pair))
+    return variant.pair.mesh.relief != "ignored" and bool(relieved_tips(variant.pair))
 
 
 def _scaled_deviations(pair: GearPair, factor: float, gears: Sequence[str] = _GEARS) -> dict[str, Any]:
@@ -244,11 +264,28 @@ def _tips_exchanged(problem: Problem, variant: Variant) -> list[Choice]:
         for label, (length, words) in shifts.items()
         if abs(length) > _SAME * g.base_pitch
     ]
+    full = _tips_not_shortened(variant.pair)
+    if full is not None:
+        words = "tip circles that are not shortened"
+        choices.append(Choice("not shortened", words, lambda one: one.with_inputs(full)))
     tips = _tips_without_shifts(variant.pair)
     if tips is not None:
         words = "tip circles of gears without profile shift"
         choices.append(Choice("without shifts", words, lambda one: one.with_inputs(tips)))
     return choices
+
+
+def _tips_not_shortened(pair: GearPair) -> dict[str, Any] | None:
+    """Tip diameters m (z/2 + h_a + x) 2 without tip alteration; None: they are those of the pair."""
+    g = pair.geometry
+    rack = pair.basic_rack
+    tips = {
+        gear: getattr(g, f"reference_radius_{gear}") + (rack.addendum_coefficient + shift) * rack.module
+        for gear, shift in zip(_GEARS, pair.profile_shifts, strict=True)
+    }
+    if all(abs(tips[gear] - getattr(g, f"tip_radius_{gear}")) < _SAME * rack.module for gear in _GEARS):
+        return None
+    return {f"{gear}.tip_diameter": to_stated(2.0 * tip, "mm") for gear, tip in tips.items()}
 
 
 def _tips_without_shifts(pair: GearPair) -> dict[str, Any] | None:
@@ -305,6 +342,12 @@ def _causes() -> Iterator[Cause]:
     yield free("viscosity", "the viscosity of the oil", _VISCOSITY, _viscosity, _reads("lubricant.viscosity"))
     yield free("roughness", "the roughness of both gears", _ROUGHNESS, _roughness, _reads("pinion.roughness"))
     yield fixed(
+        "Rz for Ra",
+        "the roughness Rz in place of Ra, or Ra divided as if it were Rz",
+        ", ".join(f"{ratio:g}" for ratio in _RZ_OVER_RA),
+        _rz_for_ra,
+    )
+    yield fixed(
         "unit of the torque",
         "a torque of another unit",
         "pound-force inches and feet, kilogram-force metres",
@@ -338,8 +381,8 @@ def _causes() -> Iterator[Cause]:
     )
     yield fixed(
         "tips exchanged",
-        "addenda, or approach and recess, exchanged; tips of gears without shift",
-        "addenda; approach and recess; line turned round; without shifts",
+        "addenda, or approach and recess, exchanged; tips of gears without shift, or not shortened",
+        "addenda; approach and recess; line turned round; not shortened; without shifts",
         _tips_exchanged,
     )
     yield Cause(
