@@ -23,7 +23,9 @@ def compute() -> xr.Dataset:
         friction__coefficient=0.05,
     )
     damping = np.geomspace(1e-3, 0.03, 12)
-    boundaries = floquet.stability_boundaries(pair, (5000.0, 20000.0), {"damping_ratio": damping}, nodes=150)
+    boundaries = floquet.stability_boundaries(
+        pair, (5000.0, 20000.0), {"damping_ratio": damping}, nodes=150, xtol=1e-4
+    )
     lines = {str(tongue): speed for tongue, speed in floquet.predicted_lines(pair).items()}
     return boundaries.assign(
         predicted=("tongue", [lines[str(label)] for label in boundaries["label"].values])

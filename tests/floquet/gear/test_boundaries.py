@@ -7,6 +7,8 @@ from scipy.special import mathieu_a, mathieu_b
 
 from floquet import gear_block, monodromy, predicted_lines, stability_boundaries, stability_chart
 from floquet.engine.tongues import Tongue, seeded_nodes, unstable_intervals
+from floquet.gear.axes import GearVariation
+from floquet.gear.chart import solved
 from floquet.gear.tongues import search_grid
 from lumped import load_gear_pair
 from lumped.errors import ParameterError
@@ -128,10 +130,12 @@ def test_boundaries_over_every_axis_are_those_of_the_chart(pair, name: str, valu
         varied_pair = load_gear_pair("nasa_28_28").with_(
             mesh__relief="ignored", mesh__damping_ratio=0.002, friction__law=law
         )
-    boundaries = stability_boundaries(
-        varied_pair, (13000.0, 19500.0), {name: values}, nodes=60, orders=2, xtol=1e-5
-    )
     speeds = np.linspace(13000.0, 19500.0, 120)
+    if law != "coulomb":
+        speeds = speeds[60:]
+    boundaries = stability_boundaries(
+        varied_pair, (speeds[0], speeds[-1]), {name: values}, nodes=speeds.size // 2, orders=2, xtol=1e-5
+    )
     unstable, *beside = nodes_beside(
         boundaries, stability_chart(varied_pair, {name: values, "speed_rpm": speeds})
     )
@@ -178,7 +182,7 @@ def test_no_tongue_of_any_order_is_lost_at_low_speed_and_low_damping() -> None:
     speeds = np.geomspace(*ends, 20_001)  # steps of 3e-5, a quarter of those of the search
 
     def radius(x: np.ndarray) -> np.ndarray:
-        return np.ravel(stability_chart(pair, {"speed_rpm": x}, rtol=1e-9).spectral_radius)
+        return solved(GearVariation.of(pair), {"speed_rpm": x}, 1e-9).radius  # labels no regions
 
     unstable, missed, _ = nodes_beside(boundaries, stability_chart(pair, {"speed_rpm": speeds}, rtol=1e-9))
     assert unstable > 500

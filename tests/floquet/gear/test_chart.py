@@ -67,7 +67,8 @@ def test_a_refined_chart_has_the_verdicts_of_the_full_grid(case) -> None:
     name, changes, axis = CASES[case]
     varied_pair = unlike_pair(name) if name in UNLIKE else load_gear_pair(name)
     varied_pair = varied_pair if case == name else varied_pair.with_(COULOMB | changes)
-    axes = {**axis, "speed_rpm": SPEEDS}
+    # The other laws are fitted anew at every speed, which is most of the work: every second one.
+    axes = {**axis, "speed_rpm": SPEEDS[::2] if case == name else SPEEDS}
     got = stability_chart(varied_pair, axes, rtol=1e-8)
     full = stability_chart(varied_pair, axes, rtol=1e-8, refine=False)
     assert 0.0 < float(got.known.mean()) < 0.95

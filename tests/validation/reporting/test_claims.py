@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 import math
 import re
 import warnings
@@ -20,7 +19,6 @@ from lumped.model.periodic_system import without_shafts
 from lumped.outcomes import Absent
 from tests.validation.reporting.kinds import KINDS
 from tests.validation.reporting.written import plain
-from validation.cross_check import comparison
 from validation.prediction.inputs import read_values
 from validation.reporting.chapters import response
 from validation.reporting.effort import QUICK, Effort
@@ -33,12 +31,6 @@ from validation.reporting.verdict import NEAR, Verdict
 EFFORT = Effort(0, 0, 0, QUICK.sweep_speeds, 161, 9, 9, 1.0, 0, "quick report")
 #: Kinds whose jumps are all found: their search ends by itself, not by its time, on a busy machine too.
 JUMPING = ("jump near", "jump far", "contact lost")
-
-
-@pytest.fixture(autouse=True)
-def without_variant(monkeypatch: pytest.MonkeyPatch) -> None:
-    """No claim is about the variant of the cross-check, which tests/validation/cross_check judges."""
-    monkeypatch.setitem(inspect.unwrap(comparison.crosscheck).__kwdefaults__, "variant", False)
 
 
 @cache

@@ -14,10 +14,12 @@ import xarray as xr
 import lumped
 from tests.validation.reporting.written import PAIRS, SMALL, known, write_report
 from validation.reporting import build
+from validation.reporting import results as of_results
 from validation.reporting.actions import advice_on_inputs
 from validation.reporting.blocks import plain
 from validation.reporting.chapters import contact_loss
 from validation.reporting.relations import broken_relations
+from validation.reporting.results import Results
 from validation.reporting.verdict import Verdict
 
 
@@ -90,6 +92,14 @@ def test_the_same_pair_gives_the_same_json(written, tmp_path):
     assert document == written.document
 
 
+def test_a_report_checks_the_variant_too(monkeypatch):
+    """The other tests do without it: the report asks for what ``crosscheck`` does by default."""
+    asked = []
+    monkeypatch.setattr(of_results, "crosscheck", lambda pair, **options: asked.append(options))
+    Results(PAIRS["calm"](), SMALL, "calm").check  # noqa: B018  (a property that computes)
+    assert [{"fidelities", "variant"} & options.keys() for options in asked] == [set()]
+
+
 class TestRelations:
     """Each relation between results is seen when it is broken."""
 
@@ -127,7 +137,8 @@ class TestRelations:
 
 
 def test_a_law_outside_its_range_is_told_on_the_page_and_nowhere_else(tmp_path, monkeypatch, recwarn):
-    monkeypatch.setattr(build, "QUICK", replace(SMALL, sweep_speeds=9, chart_speeds=25))
+    # No sentence on the law needs the jumps, whose search would take all its time.
+    monkeypatch.setattr(build, "QUICK", replace(SMALL, sweep_speeds=9, chart_speeds=25, jump_seconds=0.5))
     changes = {
         "operating.pinion_torque": 0.5,
         "operating.pinion_speed": 20000.0,

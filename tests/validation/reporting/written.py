@@ -1,6 +1,7 @@
 """Reports of two unequal pairs, one that keeps contact and one that loses it, read again from their files."""
 
 import html
+import inspect
 import json
 import re
 import shutil
@@ -16,6 +17,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 import lumped
+from validation.cross_check import comparison
 from validation.exchange.new_pair_file import new_pair_text
 from validation.plots.style import save
 from validation.reporting import build
@@ -127,6 +129,11 @@ def plain(markup: str) -> str:
     return " ".join(text.replace("\u00a0", " ").replace("\u2212", "-").split())
 
 
+def without_variant(patch: pytest.MonkeyPatch) -> None:
+    """Cross-checks leave out the variant, half their work: tests/validation/cross_check judges it."""
+    patch.setitem(inspect.unwrap(comparison.crosscheck).__kwdefaults__, "variant", False)
+
+
 @cache
 def known(name: str) -> Results:
     """Shared results of a pair, computed as far as they were asked for."""
@@ -152,6 +159,7 @@ def write_report(
             path.write_bytes(b"<svg/>")
 
     with pytest.MonkeyPatch.context() as patch:
+        without_variant(patch)
         patch.setattr(build, "FULL", SMALL)
         patch.setattr("validation.plots.style.save", keep)
         if results is not None:
