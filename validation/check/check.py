@@ -24,8 +24,8 @@ from lumped.model.periodic_system import Supports, with_supports
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import ProgressRequest
-from validation.check.curve_orders import drift
-from validation.check.curves import Curves, Role, ValuesOverSpeed
+from validation.check.curve_orders import drift, uniform_rate
+from validation.check.curves import Channel, Curves, Role, ValuesOverSpeed
 from validation.check.digits import few_digits
 from validation.check.ladder import Explanation, Ladder, climb
 from validation.check.mesh_frequency import SAME
@@ -59,6 +59,10 @@ if TYPE_CHECKING:
 BUDGET = 60.0
 #: A change between the last two blocks of cycles above this share of the motion is no settled motion.
 _SETTLED = 0.01
+#: A change between the first block of cycles and the last one above this share is a transient.
+_TRANSIENT = 0.1
+#: A rotation whose speed is within this factor of the nominal speed has the uniform rotation in it.
+_UNIFORM = 2.0
 #: A change of the motion with half the step above this share: the step is too long.
 _RESOLVED = 0.01
 #: A rotation drifts where it leaves its constant speed by this share of its vibration.
@@ -477,15 +481,37 @@ def _remark_on_no_order(problem: Problem, limit: float) -> tuple[str, ...]:
     )
 
 
+def _turns(problem: Problem, channel: Channel) -> bool:
+    """Whether a rotation has the uniform rotation of its gear in it."""
+    used = problem.settled.used
+    pair = problem.pair
+    teeth = pair.pinion.teeth if channel.kind.variable == "theta_p" else pair.gear.teeth
+    rate = abs(uniform_rate(problem.cycles[used], channel.values[used])) * teeth / (2.0 * math.pi)
+    return 1.0 / _UNIFORM < rate < _UNIFORM
+
+
 def _remarks(problem: Problem) -> tuple[str, ...]:
     """Sentences on the curves: not settled, means that were removed."""
     remarks = []
+    period = problem.motion.mesh_cycles
     change = problem.settled.change
     if change > _SETTLED:
         remarks.append(
             f"The motion has not settled: the last cycles change by {percent(change)}. Run it longer."
         )
+    elif problem.settled.transient > _TRANSIENT:
+        remarks.append(
+            f"The curves begin with a transient: its orders differ by {percent(problem.settled.transient)}. "
+            f"Compared are the last {problem.settled.compared * period} of {problem.settled.cycles * period} "
+            "mesh cycles."
+        )
     used = problem.settled.used
+    rotations = [
+        row.channel.channel for row in problem.misfit.channels if row.channel.channel.kind.is_rotation
+    ]
+    whole = [one.name for one in rotations if _turns(problem, one)]
+    if whole:
+        remarks.append(f"Whole angles, compared without their uniform rotation: {', '.join(whole)}.")
     drifting = [
         row.channel.channel.name
         for row in problem.misfit.channels

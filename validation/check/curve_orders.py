@@ -268,6 +268,14 @@ def without_ramp(cycles: FloatArray, values: FloatArray) -> FloatArray:
     return np.asarray(values - line) if abs(rise) * reach > float(np.ptp(values - line)) else values
 
 
+def uniform_rate(cycles: FloatArray, values: FloatArray) -> float:
+    """Return the constant speed of a rotation [rad per mesh cycle]."""
+    reach = float(np.ptp(cycles))
+    if reach >= _LINE_AND_ORDERS:
+        return float(_rotation(cycles, values)[0])
+    return float(values[-1] - values[0]) / max(reach, 1e-300)
+
+
 def drift(cycles: FloatArray, values: FloatArray) -> float:
     """Return how far a rotation leaves its constant speed at both ends of the curves [rad].
 

@@ -225,8 +225,13 @@ class _Carried:
         return float(fine.x) if float(fine.fun) < _REPEATS_BETTER * at_factor else factor
 
     def change(self, factor: float) -> float:
-        """Return the mean square of the change over one mesh cycle, over the variance."""
+        """Return the mean square of the change over one mesh cycle, over the variance.
+
+        NaN where the curves are no longer than a mesh cycle: they neither repeat nor fail to.
+        """
         first = self.cycles <= self.cycles[-1] - 1.0 / factor
+        if not first.any():
+            return math.nan
         later = self.cycles[first] + 1.0 / factor
         differences = [np.interp(later, self.cycles, row) - row[first] for row in self.values]
         power = np.maximum(np.mean(self.values**2, axis=1), 1e-300)

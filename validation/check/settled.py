@@ -32,12 +32,16 @@ class Settled(NamedTuple):
     change : change of the orders between the last two blocks of cycles, over the motion; 0 below the noise;
         NaN: the curves are too short to tell
     used : (k,) samples that are compared: the last half of the curves, in whole cycles
-    cycles : number of whole cycles of the curves
+    cycles : number of whole periods of the curves
+    compared : number of periods that are compared
+    transient : as ``change``, between the first block and the last one
     """
 
     change: float
     used: BoolArray
     cycles: int
+    compared: int
+    transient: float = np.nan
 
 
 def settled(curves: Curves, cycles: FloatArray, period: int) -> Settled:
@@ -51,17 +55,20 @@ def settled(curves: Curves, cycles: FloatArray, period: int) -> Settled:
     """
     whole = _whole_cycles(cycles) // period
     if curves.role == "measurement" or whole < 2:
-        return Settled(np.nan, np.ones(cycles.size, dtype=bool), whole)
+        return Settled(np.nan, np.ones(cycles.size, dtype=bool), whole, whole)
     per_cycle = cycles.size / max(float(np.ptp(cycles)), 1e-300)
     enough = int(np.ceil(_PER_NUMBER * (2 * _ORDERS + 1) / per_cycle))
     block = period * -(-enough // period)
-    change = np.nan
-    if 2 * block <= whole * period:
-        channels = [channel for channel in curves.channels if channel.tooth_pair is None]
-        changes = [_change(channel, cycles, block) for channel in channels]
-        change = float(np.sqrt(np.mean(np.square(changes)))) if changes else np.nan
+    change = transient = np.nan
+    channels = [channel for channel in curves.channels if channel.tooth_pair is None]
+    if 2 * block <= whole * period and channels:
+        first = whole * period // block
+        change, transient = (
+            float(np.sqrt(np.mean([_change(channel, cycles, block, earlier) ** 2 for channel in channels])))
+            for earlier in (2, first)
+        )
     last = period * min(max(whole // 2, 1), max(_MOST_CYCLES // period, 1))
-    return Settled(change, cycles > cycles[-1] - last + 1e-9, whole)
+    return Settled(change, cycles > cycles[-1] - last + 1e-9, whole, last // period, transient)
 
 
 def _whole_cycles(cycles: FloatArray) -> int:
@@ -70,13 +77,13 @@ def _whole_cycles(cycles: FloatArray) -> int:
     return int(np.floor(float(np.ptp(cycles)) + 1.01 * step))
 
 
-def _change(channel: Channel, cycles: FloatArray, block: int) -> float:
-    """Change of the orders of a channel from the last but one block of cycles to the last one."""
+def _change(channel: Channel, cycles: FloatArray, block: int, earlier: int) -> float:
+    """Change of the orders of a channel from a block of cycles, counted from the end, to the last one."""
     end = cycles[-1]
     values = without_ramp(cycles, channel.values) if channel.kind.is_rotation else channel.values
     orders = np.arange(1.0, _ORDERS + 1.0)
     fits = []
-    for number in (2, 1):
+    for number in (earlier, 1):
         inside = (cycles > end - number * block + 1e-9) & (cycles <= end - (number - 1) * block + 1e-9)
         fits.append(complex_orders(cycles[inside], values[inside], orders))
     before, after = fits

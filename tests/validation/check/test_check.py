@@ -206,4 +206,32 @@ def test_a_motion_that_has_not_settled_is_said(pair):
     fades = check(pair, sampled(pair, ("dte", "x_p"), cycles=8, change=fading), explain=False)
     assert any(remark.startswith("The motion has not settled") for remark in fades.remarks)
     settled = check(pair, sampled(pair, ("dte", "x_p"), cycles=8), explain=False)
-    assert not any("settled" in remark for remark in settled.remarks)
+    assert not any(word in remark for remark in settled.remarks for word in ("settled", "transient"))
+
+
+def test_a_transient_at_the_beginning_is_said_and_not_compared(pair):
+    def begins(name, values, time):
+        period = pair.geometry.mesh_period
+        return values + 0.5 * np.ptp(values) * np.exp(-3.0 * time / period) * np.cos(12.3 * time / period)
+
+    result = check(pair, sampled(pair, ("dte", "x_p"), cycles=8, change=begins), explain=False)
+    assert result.agrees
+    said = [remark for remark in result.remarks if remark.startswith("The curves begin with a transient")]
+    assert len(said) == 1
+    assert said[0].endswith(
+        f"the last {4 * result.problem.motion.mesh_cycles} of "
+        f"{8 * result.problem.motion.mesh_cycles} mesh cycles."
+    )
+
+
+@pytest.mark.parametrize("cycles", [1, 5])
+def test_whole_angles_are_said(pair, cycles):
+    def turning(name, values, time):
+        speed = {"theta_p": 1.0, "theta_g": -pair.pinion.teeth / pair.gear.teeth}
+        return values + speed.get(name, 0.0) * pair.geometry.omega_pinion * time
+
+    names = ("dte", "theta_p", "theta_g")
+    result = check(pair, sampled(pair, names, cycles=cycles, change=turning), explain=False)
+    assert "Whole angles, compared without their uniform rotation: theta_p, theta_g." in result.remarks
+    result = check(pair, sampled(pair, names, cycles=cycles), explain=False)
+    assert not any(remark.startswith("Whole angles") for remark in result.remarks)
