@@ -548,7 +548,10 @@ def test_a_pair_too_slow_for_the_second_program_has_a_report():
     assert (str(results.second), results.same_equations) == (str(results.check), None)
     assert results.samples == SMALL.samples // 2  # each costs much
     near = results.pair.with_({"operating.speed_range": [100.0, 130.0]})
-    few = Results(near, replace(QUICK, sweep_speeds=9, chart_speeds=21, chart_dampings=5, drawn_machines=0))
+    few = Results(
+        near,
+        replace(QUICK, sweep_speeds=9, chart_speeds=21, chart_dampings=5, jump_seconds=0.5, drawn_machines=0),
+    )
     vars(few)["check"] = results.check
     first = page_one(few)  # bare discs swing: tenfold inertia leaves 1 %
     assert (first.verdict, "motor and brake" in first.actions[0].text) == (Verdict.OUTSIDE, True)
