@@ -25,6 +25,7 @@ from lumped.model.periodic_system import Supports, with_supports
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray, IntArray, ProgressRequest
+from validation.calibrate.data import Data
 from validation.calibrate.discrepancy import (
     LEVELS,
     discrepancy_covariance,
@@ -35,7 +36,7 @@ from validation.calibrate.discrepancy import (
 from validation.calibrate.fit import STARTS, Fit, Minimum, starts
 from validation.calibrate.forms import Form, forms_of, machine, numeric_inputs, pair_of
 from validation.calibrate.machines import Machines
-from validation.calibrate.measured import Measured, measured_records
+from validation.calibrate.measured import measured_records
 from validation.calibrate.mixture import Component, by_levels, component, draws, mixture, pareto_shape
 from validation.calibrate.posterior import RELIABLE, Posterior
 from validation.prediction.motion import predicted
@@ -81,7 +82,7 @@ def calibrate(
     ----------
     pair : the gear pair; speed and torque of each record replace those of the pair
     records : one record or a sequence of records: paths of descriptions (TOML) or of data files, mappings,
-        data frames, ``Curves``, as ``check`` takes them, over time or mesh cycles
+        data frames, ``Curves``, as ``check`` takes them, over time or mesh cycles, or values over speed
     discrepancy : whether the model may be off in each order of each channel, by a share with a half-normal
         prior of 5 %. Without it the model counts as exact, and the ranges are too narrow
     machines : number of possible machines, 16 to 1023
@@ -162,7 +163,7 @@ def _minima(
     pair: GearPair,
     forms: Sequence[Form],
     inputs: Sequence[Input],
-    data: Sequence[Measured],
+    data: Sequence[Data],
     factor: FloatArray,
     steps: _Steps,
 ) -> dict[Form, list[Minimum]]:
@@ -195,7 +196,7 @@ def _refined(
     pair: GearPair,
     forms: Sequence[Form],
     inputs: Sequence[Input],
-    data: Sequence[Measured],
+    data: Sequence[Data],
     factors: dict[float, FloatArray],
     levels: dict[float, float],
     steps: _Steps,
@@ -281,18 +282,20 @@ def _of_law(fit: Fit, other: Minimum) -> Minimum | None:
 
 
 def _refuse_another_pair(
-    data: Sequence[Measured],
+    data: Sequence[Data],
     minima: Sequence[tuple[Form, Minimum]],
     factor: FloatArray,
     values: FloatArray,
 ) -> None:
     """Refuse records that no machine of the pair explains, even with the largest discrepancy of the model."""
     least = min(component(form, one, LEVELS[-1], 1.0, factor, values).chi_squared for form, one in minima)
-    rests = [values - one.motions.values for _, one in minima]
-    explained = max(max(1.0 - float(rest @ rest) / float(values @ values) for rest in rests), 0.0)
+    scales = np.concatenate([one.scales for one in data])
+    motion = values / scales
+    rests = [motion - one.motions.values / scales for _, one in minima]
+    explained = max(max(1.0 - float(rest @ rest) / float(motion @ motion) for rest in rests), 0.0)
     if chi2.sf(least, values.size) >= _IMPOSSIBLE and explained >= _EXPLAINED:
         return
-    names = ", ".join(one.name for one in data)
+    names = ", ".join(dict.fromkeys(one.name for one in data))
     raise refuse(
         "records",
         f"{names}: the best machine explains {100.0 * explained:.0f} % of the motion",
@@ -304,7 +307,7 @@ def _refuse_another_pair(
 def _machines(
     pair: GearPair,
     inputs: Sequence[Input],
-    data: Sequence[Measured],
+    data: Sequence[Data],
     components: Sequence[Component],
     factors: dict[float, FloatArray],
     count: int,

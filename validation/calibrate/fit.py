@@ -15,15 +15,15 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from scipy.linalg import solve_triangular
+from scipy.linalg import block_diag, solve_triangular
 from scipy.special import ndtri
 from scipy.stats import qmc
 
 from lumped.errors import LawRangeWarning, SpurcheckError
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
+from validation.calibrate.data import Data
 from validation.calibrate.forms import LIMIT, beside, level_score, machine
-from validation.calibrate.measured import Measured
 from validation.prediction.motion import predicted
 from validation.prediction.uncertain_input import Input
 
@@ -46,7 +46,7 @@ class Motions:
     Attributes
     ----------
     values : (n,) data in the phase of each record
-    by_shift : (n, record) slopes by the shift of each record
+    by_shift : (n, shift) slopes by the shifts of the records
     """
 
     values: FloatArray
@@ -117,7 +117,7 @@ class Fit:
 
     pair: GearPair
     inputs: Sequence[Input]
-    records: Sequence[Measured]
+    records: Sequence[Data]
     factor: FloatArray
     tell: Callable[[], None] = lambda: None
     data: FloatArray = field(init=False)
@@ -129,23 +129,21 @@ class Fit:
     def motions(self, z: FloatArray) -> Motions | None:
         """Return the predicted data at normal scores (input,); None: no such machine, or no motion."""
         values = []
-        shifts = np.zeros((self.data.size, len(self.records)))
-        start = 0
+        shifts = []
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", LawRangeWarning)
                 one = machine(self.pair, self.inputs, z)
-                for number, record in enumerate(self.records):
+                for record in self.records:
                     at = at_record(one, self.pair, record)
                     of_record, by_shift = record.predicted(predicted(at, SAMPLES))
                     values.append(of_record)
-                    shifts[start : start + by_shift.size, number] = by_shift
-                    start += by_shift.size
+                    shifts.append(by_shift)
         except SpurcheckError:
             return None
         finally:
             self.tell()
-        return Motions(np.concatenate(values), shifts)
+        return Motions(np.concatenate(values), np.asarray(block_diag(*shifts)))
 
     def slopes(self, z: FloatArray, motions: Motions) -> FloatArray:
         """Return (n, input) slopes by one-sided differences; an input without a motion beside has slope 0."""
@@ -217,7 +215,7 @@ class Fit:
         )
 
 
-def at_record(one: GearPair, pair: GearPair, record: Measured) -> GearPair:
+def at_record(one: GearPair, pair: GearPair, record: Data) -> GearPair:
     """Return a machine of a pair at the speed and torque of a record.
 
     A torque that is off by 2 % at the torque of the pair is off by 2 % at the torque of the record: it is the

@@ -22,6 +22,7 @@ from lumped.errors import SpurcheckError
 from lumped.fields.units import to_stated
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
+from validation.calibrate.data import Data
 from validation.calibrate.discrepancy import (
     discrepancy_covariance,
     noise_covariance,
@@ -61,7 +62,7 @@ class Calibrated(Protocol):
         """The varied inputs."""
 
     @property
-    def records(self) -> tuple[Measured, ...]:
+    def records(self) -> tuple[Data, ...]:
         """The records."""
 
     @property
@@ -243,7 +244,7 @@ def _levels(posterior: Calibrated) -> dict[float, float]:
 
 
 def _deviations_after(
-    posterior: Calibrated, truths: Sequence[_Truth], minima: Sequence[Minimum], records: Sequence[Measured]
+    posterior: Calibrated, truths: Sequence[_Truth], minima: Sequence[Minimum], records: Sequence[Data]
 ) -> FloatArray:
     """(result,) expected standard deviation of the results with the candidate as the last record.
 
@@ -326,12 +327,7 @@ def _record(posterior: Calibrated, speed: float, torque: float) -> Measured | No
 
     None: no motion. It has all channels of the candidates.
     """
-    shares = [
-        np.sqrt(float(np.trace(one.orders.covariance)) / (2.0 * one.orders.orders.size)) / one.scale
-        for record in posterior.records
-        for one in record.channels
-    ]
-    noise = float(np.median(shares))
+    noise = float(np.median([share for record in posterior.records for share in record.noise_shares]))
     operating = {
         "operating.pinion_speed": f"{float(speed)!r} rad/s",
         "operating.pinion_torque": f"{float(torque)!r} N*m",

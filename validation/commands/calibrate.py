@@ -133,9 +133,11 @@ def _show(posterior: Posterior) -> None:
 
 def _as_json(posterior: Posterior) -> dict[str, Any]:
     """Return the numbers as JSON data."""
+    from validation.calibrate.data import words_of
+
     table = posterior.table
     return {
-        "records": [one.words for one in posterior.records],
+        "records": words_of(posterior.records),
         "identified": posterior.identified,
         "not_identified": list(posterior.not_identified),
         "forms": posterior.forms,
