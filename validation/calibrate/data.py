@@ -107,6 +107,10 @@ class Data(Protocol):
         """(n,) size of the channel of each number: differences count in parts of it."""
 
     @property
+    def samples(self) -> int:
+        """Samples in a mesh cycle of a motion from which the data are predicted."""
+
+    @property
     def shifts(self) -> int:
         """Number of shifts in time that are free: 1 of curves, 0 of values over speed."""
 
@@ -125,11 +129,14 @@ class Data(Protocol):
         """Return the first channel beside fitted data (n,)."""
 
     def unexplained(self, fitted: FloatArray, count: int) -> Iterator[Unexplained]:
-        """Numbers in which fitted data (n,) miss the record by more than its noise; one of ``count`` in all."""
+        """Numbers, out of ``count``, in which fitted data (n,) miss the record by more than its noise."""
 
 
 def first_channel(records: Sequence[Data], fitted: FloatArray) -> Fitted:
-    """Return the first channel of the first record beside fitted data (n,) of all records; a sweep is one record."""
+    """Return the first channel of the first record beside fitted data (n,) of all records.
+
+    A sweep is one record.
+    """
     words = records[0].words
     parts = []
     start = 0

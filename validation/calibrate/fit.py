@@ -35,8 +35,6 @@ _STEPS = 10
 _ENOUGH = 0.5
 #: Minima nearer to each other than this, in standard deviations of the posterior, are one.
 _SAME = 1.0
-#: Samples in a mesh cycle of a motion: 16 for each of the fitted orders.
-SAMPLES = 128
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,7 +134,7 @@ class Fit:
                 one = machine(self.pair, self.inputs, z)
                 for record in self.records:
                     at = at_record(one, self.pair, record)
-                    of_record, by_shift = record.predicted(predicted(at, SAMPLES))
+                    of_record, by_shift = record.predicted(predicted(at, record.samples))
                     values.append(of_record)
                     shifts.append(by_shift)
         except SpurcheckError:

@@ -44,6 +44,8 @@ _RESOLVED = 40
 _FLOOR = 2e-3
 #: Least number of mesh cycles of a record.
 _CYCLES = 8
+#: Samples in a mesh cycle of a motion: 16 for each of the fitted orders.
+SAMPLES = 128
 #: Records of the same channels whose orders differ by less than this share are the same record.
 _SAME = 1e-9
 
@@ -125,6 +127,11 @@ class Measured:
         return np.concatenate([np.full(2 * one.orders.orders.size, one.scale) for one in self.channels])
 
     @property
+    def samples(self) -> int:
+        """Samples in a mesh cycle: 16 for each of the fitted orders."""
+        return SAMPLES
+
+    @property
     def shifts(self) -> int:
         """One: the shift in time."""
         return 1
@@ -139,7 +146,7 @@ class Measured:
 
     @property
     def loadings(self) -> list[Loading]:
-        """An error of each complex order, in the phase of the order; see ``validation.calibrate.discrepancy``."""
+        """An error of each complex order, in its phase; see ``validation.calibrate.discrepancy``."""
         found = []
         start = 0
         for channel in self.channels:
@@ -157,9 +164,9 @@ class Measured:
         return found
 
     def predicted(self, prediction: Prediction) -> tuple[FloatArray, FloatArray]:
-        """Return the data (n,) that a prediction gives in the phase of the record, and their slope by the shift.
+        """Return the data (n,) that a prediction gives in the phase of the record, and their slope.
 
-        The slope (n, 1) is the change for each mesh cycle.
+        The slope (n, 1) is the change by the shift, for each mesh cycle.
         """
         motion = mean_motion(prediction, self.recurrence)
         ours = [orders_of_motion(motion, one.channel, one.orders) for one in self.channels]
@@ -184,7 +191,7 @@ class Measured:
         return Fitted(orders.orders, orders.amplitudes, noise, ours, kind.words, kind.unit, "mesh order")
 
     def unexplained(self, fitted: FloatArray, count: int) -> Iterator[Unexplained]:
-        """Orders in which fitted data (n,) miss the record by more than its noise; one of ``count`` in all."""
+        """Orders, out of ``count``, in which fitted data (n,) miss the record by more than its noise."""
         start = 0
         for channel in self.channels:
             orders = channel.orders

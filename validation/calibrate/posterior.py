@@ -18,7 +18,7 @@ from lumped.display.result import DisplayedResult, no_variables
 from lumped.labelling import labelled_dataset, provenance
 from lumped.model.periodic_system import supports_of
 from lumped.schema.pair import GearPair, field_values, validated
-from lumped.schema.posterior import ERROR
+from lumped.schema.posterior import ERROR, FROM_RECORD
 from validation.calibrate.data import Data, Unexplained, first_channel, names_of, words_of
 from validation.calibrate.forms import pair_of
 from validation.calibrate.machines import Machines
@@ -205,7 +205,7 @@ class Posterior(DisplayedResult):
         sources = data.setdefault("sources", {})
         for path in columns:
             if self._knows(path):
-                sources[path] = f"from record {names}"
+                sources[path] = FROM_RECORD + names
                 assumed.pop(path, None)
             else:
                 sources.pop(path, None)
@@ -277,11 +277,22 @@ class Posterior(DisplayedResult):
             )
         return tuple(lines)
 
-    def text(self) -> str:
-        """Return the fitted pair as the text of a parameter file, with what the records say as comments."""
+    @property
+    def recommendation(self) -> tuple[str, ...]:
+        """Which run, and which sweep, would leave least of page 1: sentences out of ``next_tests``."""
+        from validation.calibrate.next_test import recommendation
+
+        return recommendation(self.next_tests)
+
+    def text(self, *, next_test: bool = False) -> str:
+        """Return the fitted pair as the text of a parameter file, with what the records say as comments.
+
+        ``next_test``: whether the comments say which test would pay next.
+        """
         from validation.exchange import parameter_text
 
-        text = parameter_text(self.pair.to_mapping(), self.sentences)
+        comments = (*self.sentences, *(self.recommendation if next_test else ()))
+        text = parameter_text(self.pair.to_mapping(), comments)
         head, mark, table = text.partition("[posterior]")
         return (
             head + mark + _LIST.sub(lambda found: "[" + " ".join(found[1].split()).rstrip(",") + "]", table)

@@ -29,6 +29,8 @@ from validation.prediction.motion import Prediction, predicted
 _FLOOR = 5e-3
 #: Noise of a value whose column states none, as a share of it.
 NOISE = 0.02
+#: Samples in a mesh cycle of a motion: a peak to peak is then right to 0.1 %, of 128 samples to 1 to 10 %.
+SAMPLES = 1024
 #: Most speeds: each costs a motion in every step of a fit.
 MOST_SPEEDS = 60
 #: Words of the statistics.
@@ -99,6 +101,11 @@ class ValuesAtSpeed:
     def noise_shares(self) -> list[float]:
         """Standard deviations over the sizes."""
         return [float(one) for one in self.deviations / self.scales]
+
+    @property
+    def samples(self) -> int:
+        """Samples in a mesh cycle: of a peak to peak more than of orders."""
+        return SAMPLES
 
     @property
     def shifts(self) -> int:
@@ -194,7 +201,7 @@ def values_at_speeds(pair: GearPair, sweep: ValuesOverSpeed) -> list[ValuesAtSpe
         at = pair.with_(operating).healthy
         one = ValuesAtSpeed(sweep.name, words, at, sweep.columns, place)
         try:
-            one.predicted(predicted(at))
+            one.predicted(predicted(at, SAMPLES))
         except ParameterError:
             raise
         except SpurcheckError as error:
