@@ -13,6 +13,7 @@ import numpy as np
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 from validation.prediction.motion import Prediction
+from validation.signals.fitted import Fitted
 
 #: A number is unexplained where more than this share of the size of its channel is left over.
 LEFT_OVER = 0.05
@@ -53,26 +54,6 @@ class Unexplained(NamedTuple):
     fitted: float
     rest: float
     words: str
-
-
-class Fitted(NamedTuple):
-    """Measured and fitted numbers of one channel.
-
-    Attributes
-    ----------
-    places : (k,) mesh orders, or speeds [rpm]
-    measured, noise, fitted : (k,) amplitudes or values, standard deviations of the noise, those of the fit
-    words, unit : plain name of the numbers, and their SI unit
-    axis : plain name of the places
-    """
-
-    places: FloatArray
-    measured: FloatArray
-    noise: FloatArray
-    fitted: FloatArray
-    words: str
-    unit: str
-    axis: str
 
 
 class Data(Protocol):

@@ -17,7 +17,7 @@ from lumped.errors import ParameterError, SpurcheckError, refuse
 from lumped.fields.units import to_stated
 from lumped.schema.pair import GearPair
 from lumped.typing import ComplexArray, FloatArray
-from validation.calibrate.data import LEFT_OVER, Data, Fitted, Loading, Unexplained
+from validation.calibrate.data import LEFT_OVER, Data, Loading, Unexplained
 from validation.calibrate.values_at_speed import values_at_speeds
 from validation.check.curve_orders import (
     BIN,
@@ -34,6 +34,7 @@ from validation.check.record.compare import check_record, mean_motion
 from validation.files.formatting import quantity as printed
 from validation.prediction.motion import Prediction, predicted
 from validation.signals.complex_orders import ComplexOrders, common_shift
+from validation.signals.fitted import Fitted
 
 #: Highest mesh order that is fitted. All orders that the samples resolve are computed, so that higher orders
 #: do not count as noise.

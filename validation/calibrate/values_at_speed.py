@@ -16,7 +16,7 @@ from lumped.errors import ParameterError, SpurcheckError, refuse
 from lumped.fields.units import to_stated
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
-from validation.calibrate.data import LEFT_OVER, Fitted, Loading, Unexplained
+from validation.calibrate.data import LEFT_OVER, Loading, Unexplained
 from validation.check.curves import SpeedColumn, ValuesOverSpeed
 from validation.check.over_speed import statistic_of
 from validation.check.quantities import QUANTITIES
@@ -24,6 +24,7 @@ from validation.check.record.channel import UNKNOWN, noise_factor
 from validation.check.record.compare import mean_motion
 from validation.files.formatting import quantity as printed
 from validation.prediction.motion import Prediction, predicted
+from validation.signals.fitted import Fitted
 
 #: Standard uncertainty of a value by the numerics, and by the speed of the record, as a share of it.
 _FLOOR = 5e-3

@@ -6,8 +6,8 @@ from collections.abc import Collection, Mapping
 
 from matplotlib.figure import Figure
 
-from validation.calibrate.data import Fitted
 from validation.plots.style import BLACK, BLUE, GREY, legend, new_figure, scaled
+from validation.signals.fitted import Fitted
 
 #: Height of a bar, and of the rest of a panel [inch].
 _BAR = 0.24
