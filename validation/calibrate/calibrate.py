@@ -159,6 +159,25 @@ class _Steps:
             self._tell(min(self._done / self._all, 0.99))
 
 
+class _Search:
+    """Minima of a fit. Of long sweeps the search begins with a few speeds: most of its way costs less."""
+
+    def __init__(self, fit: Fit) -> None:
+        self.fit = fit
+        self._few = fit.with_few_speeds()
+        self._seen: list[Minimum] = []
+
+    def minimum(self, start: FloatArray) -> Minimum | None:
+        """Return the minimum that a start leads to; None: no motion, or with few speeds one seen before."""
+        if self._few is None:
+            return self.fit.minimum(start)
+        one = self._few.minimum(start)
+        if one is None or not self._few.different(self._seen, one):
+            return None
+        self._seen.append(one)
+        return self.fit.minimum(one.z)
+
+
 def _minima(
     pair: GearPair,
     forms: Sequence[Form],
@@ -173,12 +192,13 @@ def _minima(
         by_mesh.setdefault(form.mesh, []).append(form)
     points = starts(len(inputs))
     fits = {mesh: Fit(pair_of(pair, one[0]), inputs, data, factor, steps) for mesh, one in by_mesh.items()}
-    found = {mesh: _added([], fit, fit.minimum(points[0])) for mesh, fit in fits.items()}
+    searches = {mesh: _Search(fit) for mesh, fit in fits.items()}
+    found = {mesh: _added([], fit, searches[mesh].minimum(points[0])) for mesh, fit in fits.items()}
     least = min((one.chi_squared for minima in found.values() for one in minima), default=np.inf)
     for mesh, fit in fits.items():
         if not found[mesh] or min(one.chi_squared for one in found[mesh]) <= least + _APART:
             for point in points[1:]:
-                _added(found[mesh], fit, fit.minimum(point))
+                _added(found[mesh], fit, searches[mesh].minimum(point))
     result: dict[Form, list[Minimum]] = {}
     for mesh, same_mesh in by_mesh.items():
         result[same_mesh[0]] = found[mesh]
@@ -215,10 +235,14 @@ def _refined(
     # The slopes of the old minima are not those of these levels: new minima take their place.
     result = [old for old in components if (old.form.mesh, old.level) not in places]
     refined: dict[tuple[tuple[tuple[str, str], ...], float], list[Minimum]] = {}
+    searches: dict[tuple[tuple[tuple[str, str], ...], float], _Search] = {}
     for one, start in _starts_at_levels(probable, components):
         mesh, level = one.form.mesh, one.level
-        fit = Fit(pair_of(pair, one.form), inputs, data, factors[level], steps)
-        minimum = fit.minimum(start)
+        if (mesh, level) not in searches:
+            fit = Fit(pair_of(pair, one.form), inputs, data, factors[level], steps)
+            searches[mesh, level] = _Search(fit)
+        fit = searches[mesh, level].fit
+        minimum = searches[mesh, level].minimum(start)
         same = refined.setdefault((mesh, level), [])
         if minimum is None or not fit.different(same, minimum):
             continue

@@ -130,6 +130,18 @@ def first_channel(records: Sequence[Data], fitted: FloatArray) -> Fitted:
     return Fitted(joined[0], joined[1], joined[2], joined[3], parts[0].words, parts[0].unit, parts[0].axis)
 
 
+def few_speeds(records: Sequence[Data], most: int) -> list[int]:
+    """Return places of records with at most ``most`` speeds of each sweep, evenly spaced; curves all stay."""
+    places: dict[str, list[int]] = {}
+    for place, one in enumerate(records):
+        places.setdefault(one.words, []).append(place)
+    kept = []
+    for parts in places.values():
+        few = np.round(np.linspace(0, len(parts) - 1, min(most, len(parts)))).astype(int)
+        kept += [parts[j] for j in few]
+    return sorted(kept)
+
+
 def names_of(records: Sequence[Data]) -> str:
     """Return the names of records with their speeds and torques."""
     return ", ".join(words_of(records))

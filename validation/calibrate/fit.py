@@ -15,14 +15,14 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from scipy.linalg import block_diag, solve_triangular
+from scipy.linalg import block_diag, cholesky, solve_triangular
 from scipy.special import ndtri
 from scipy.stats import qmc
 
 from lumped.errors import LawRangeWarning, SpurcheckError
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
-from validation.calibrate.data import Data
+from validation.calibrate.data import Data, few_speeds
 from validation.calibrate.forms import LIMIT, beside, level_score, machine
 from validation.prediction.motion import predicted
 from validation.prediction.uncertain_input import Input
@@ -33,6 +33,8 @@ _SEED = 7
 #: Most steps of a start, and the gain in chi^2 that a further step must promise.
 _STEPS = 10
 _ENOUGH = 0.5
+#: Speeds of a sweep from which the search of minima starts.
+_FEW = 5
 #: Minima nearer to each other than this, in standard deviations of the posterior, are one.
 _SAME = 1.0
 
@@ -123,6 +125,17 @@ class Fit:
     def __post_init__(self) -> None:
         """Collect the data of all records."""
         self.data = np.concatenate([one.values for one in self.records])
+
+    def with_few_speeds(self) -> Fit | None:
+        """Return the fit to a few speeds of each long sweep, which costs less; None: no sweep is long."""
+        kept = few_speeds(self.records, _FEW)
+        if len(kept) == len(self.records):
+            return None
+        ends = np.cumsum([0, *(one.values.size for one in self.records)])
+        rows = np.concatenate([np.arange(ends[j], ends[j + 1]) for j in kept])
+        covariance = (self.factor @ self.factor.T)[np.ix_(rows, rows)]
+        few = [self.records[j] for j in kept]
+        return Fit(self.pair, self.inputs, few, cholesky(covariance, lower=True), self.tell)
 
     def motions(self, z: FloatArray) -> Motions | None:
         """Return the predicted data at normal scores (input,); None: no such machine, or no motion."""

@@ -168,6 +168,21 @@ def test_rms_and_orders_are_values_too(truth):
     assert not np.allclose(fit.motions(np.zeros(0)).values, measured, rtol=0.05)
 
 
+def test_the_search_of_a_long_sweep_starts_with_five_speeds(truth, sweep):
+    speeds = np.linspace(1400.0, 3000.0, 9)
+    parts = measured_records(rig_pair(), [rig_record(truth), _sweep(truth, speeds=speeds), sweep])
+    fit = Fit(rig_pair(), (), parts, np.linalg.cholesky(noise_covariance(parts)))
+    few = fit.with_few_speeds()
+    assert [one.values[0] for one in few.records] == [
+        parts[j].values[0] for j in (0, 1, 3, 5, 7, 9, 10, 11, 12, 13)
+    ]
+    np.testing.assert_allclose(
+        few.factor @ few.factor.T, noise_covariance(few.records), rtol=1e-12, atol=1e-40
+    )
+    short = measured_records(rig_pair(), [sweep])
+    assert Fit(rig_pair(), (), short, np.eye(4)).with_few_speeds() is None
+
+
 def test_a_value_that_no_input_explains_is_printed(sweep):
     values = sweep.columns[0].values.copy()
     values[1] *= 1.6
