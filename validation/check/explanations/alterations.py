@@ -26,7 +26,7 @@ _APART = 5e-3
 _SHAPE = (-0.5, -0.2, 0.2, 0.5)
 _LAG = (-0.3, -0.1, 0.1, 0.3)
 _LATE = (0.001, 0.003, 0.01, 0.03)
-#: Mesh orders of the static transmission error that are added: number, label, words.
+#: Parts of the static error that are added: mesh orders, label, words.
 _STATIC_PARTS = (
     (-1, "without its mean", "the varying part"),
     (1, "one order", "one mesh order"),
@@ -289,6 +289,7 @@ def _static_error(problem: Problem, variant: Variant) -> list[Choice]:
             )
             for orders, label, part in _STATIC_PARTS
             for ending, sign in (("", 1.0), (", wrong sign", -1.0))
+            if orders != -1 or sign > 0.0  # else it differs by its mean alone, which may be removed
         ),
         *_excited(problem, variant),
     ]
@@ -350,8 +351,7 @@ def _pulling(problem: Problem, variant: Variant) -> list[Choice]:
     """A linear mesh; where teeth part also their other forces."""
     if variant.physics.pulling or variant.physics.contact:
         return []
-    words = "a linear mesh, in which teeth may pull, each by itself"
-    choices = [_altered("linear", words, pulling=True)]
+    choices = [_altered("linear", "a linear mesh, in which teeth may pull, each by itself", pulling=True)]
     if not takes_contact_force(variant) or not _parts(problem):
         return choices
     return [
@@ -643,7 +643,7 @@ def _causes() -> Iterator[Cause]:
     yield altered(
         "static error as an excitation",
         "the static transmission error as an excitation, beside the varying stiffness or in place of it",
-        "right and wrong sign; without its mean, one to five orders; constant stiffness; stiffness as a force",
+        "right and wrong sign; one to five orders; constant stiffness; stiffness as a force",
         _static_error,
     )
     for field, meaning, grid in (

@@ -204,7 +204,7 @@ def with_table_of_pair(pair: GearPair, elements: MeshElements, entries: int) -> 
     low, high = stiffness.interval
     step = pair.geometry.base_pitch / abs(entries)
     count = int(np.floor((high - low) / step * (1.0 - 1e-9))) + 2
-    nodes = low + step * np.arange(count)
+    nodes = np.asarray(low + step * np.arange(count), dtype=np.float64)
     inside = np.clip(nodes, low + 1e-9 * step, high - 1e-9 * step)
     values = np.where(nodes < high, stiffness(inside), 0.0)
     if entries < 0:
