@@ -13,7 +13,7 @@ from validation.signals.fitted import Fitted
 _BAR = 0.24
 _FRAME = 0.9
 #: Height of the panel of orders over that of the bars.
-_ORDERS = 2.2
+_ORDERS = 3.0
 
 
 def calibration_figure(shares: Mapping[str, float], known: Collection[str], channel: Fitted) -> Figure:
