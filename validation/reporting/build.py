@@ -143,6 +143,9 @@ def report(
                 title(results),
                 first_numbers(results.prediction) if known else static_numbers(results.static),
             )
+        if results.process is not None:
+            with suppress(NumericalError):  # page 1 says why
+                _ = results.like_loses_contact  # for which jumps in the second process wait
         # Chapters and figures import matplotlib, for which the first numbers need not wait.
         from validation.reporting.chapters import CHAPTERS
         from validation.reporting.first_figures import first_figures
