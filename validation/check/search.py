@@ -31,6 +31,7 @@ from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 from validation.check.curve_orders import BIN, ChannelOrders
 from validation.check.explanations.cause import Cause, Choice, Kind, Variant
+from validation.check.explanations.design_inputs import has_relief
 from validation.check.explanations.misreadings import causes_of_channels
 from validation.check.explanations.physics import Physics, motion_of
 from validation.check.explanations.reading import Reading, read
@@ -42,6 +43,10 @@ from validation.check.problem import Problem
 
 #: A free parameter counts as this much worse than a fixed value with the same misfit.
 FREE_IS_WORSE = 1.15
+#: A change of the equations that takes something else away counts as this much worse, for each such thing.
+_SIDE_EFFECT = 1.25
+#: A course that many a mistake resembles, such as a slope, counts as this much worse than a mistake.
+_DESCRIBES = 1.15
 #: Misfits below this share of the limit count as alike.
 _ALIKE = 0.1
 #: Step of the derivatives by a free parameter, on the scale of the search.
@@ -129,11 +134,13 @@ class Trial(NamedTuple):
     motion : its motion
     misfit : its misfit
     residual : real numbers whose root sum square is the value of the misfit
+    side_effects : number of things that changes of the equations took away beside: loaded contact, relief
     """
 
     motion: MotionCurves
     misfit: Misfit
     residual: FloatArray
+    side_effects: int = 0
 
     @property
     def value(self) -> float:
@@ -164,12 +171,14 @@ class Path:
         return bool(self.steps) and self.steps[-1].choice is not None and self.steps[-1].choice.vague
 
     def score(self, floor: float, limit: float = 0.0) -> float:
-        """Return the misfit with the price of the free parameters.
+        """Return the misfit with the price of free parameters, of side effects and of mere descriptions.
 
         Misfits below ``floor``, and below a tenth of the limit, count as alike.
         """
         alike = np.hypot(floor, _ALIKE * limit)
-        return float(np.hypot(self.trial.value, alike)) * FREE_IS_WORSE**self.free
+        price = FREE_IS_WORSE**self.free * _SIDE_EFFECT**self.trial.side_effects
+        price *= _DESCRIBES ** sum(step.cause.describes for step in self.steps)
+        return float(np.hypot(self.trial.value, alike)) * price
 
 
 #: Motions of changed models; None: the model has no motion.
@@ -237,8 +246,10 @@ class Search:
         """The trial of steps that were not tried before."""
         try:
             variant = Variant(self.problem.pair)
+            side_effects = 0
             for step in steps:
-                variant = step.of(variant)
+                before, variant = variant, step.of(variant)
+                side_effects += _side_effects(step.cause, before, variant)
         except SpurcheckError:
             return None
         motion = self._motion(variant.pair, variant.physics)
@@ -257,7 +268,7 @@ class Search:
                 continue
             residual = residual_of(misfit)
             if residual.size == self._size and np.isfinite(residual).all():
-                return Trial(motion, misfit, residual)
+                return Trial(motion, misfit, residual, side_effects)
         return None
 
     def _motion(self, pair: GearPair, physics: Physics) -> MotionCurves | None:
@@ -575,6 +586,15 @@ class Search:
             if trial is not None and trial.value < path.trial.value:
                 return Path(steps, trial)
         return None
+
+
+def _side_effects(cause: Cause, before: Variant, after: Variant) -> int:
+    """Number of things that a change of the equations takes away beside: loaded contact, relief that acts."""
+    if cause.kind is not Kind.PHYSICS:
+        return 0
+    one, other = before.pair, after.pair
+    relief = one.mesh.relief != other.mesh.relief and has_relief(one)
+    return int(one.mesh.contact != other.mesh.contact) + int(relief)
 
 
 def _moved(steps: Sequence[Step], change: FloatArray) -> tuple[Step, ...]:

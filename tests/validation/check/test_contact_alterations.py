@@ -298,6 +298,63 @@ def test_a_table_that_a_spline_joins(pair):
     assert abs(np.subtract(*total(pair, true, near))) > 0.05 * above
 
 
+@pytest.mark.parametrize(("entries", "at_start"), [(10, 1.0), (-10, 0.0), (-7, 0.0)])
+def test_a_table_of_a_tooth_pair(pair, entries, at_start):
+    """Straight lines between k at A, A + p/n, ..., zero at the first one behind D; at A if n < 0."""
+    g = pair.geometry
+    own = altered_elements(pair, Physics()).stiffness
+    laws = altered_elements(pair, Physics(pair_table=entries))
+    step = g.base_pitch / abs(entries)
+    nodes = [g.L_XA]
+    while nodes[-1] < g.L_XD:
+        nodes.append(nodes[-1] + step)
+    values = own(np.array(nodes) + 1e-9 * step)
+    values[0] *= at_start
+    values[-1] = 0.0
+    xi = np.linspace(nodes[0], nodes[-1], 83)[1:-1]
+    assert laws.stiffness(xi) == pytest.approx(
+        np.interp(xi, nodes, values), rel=1e-5, abs=1e-6 * values.max()
+    )
+    assert laws.friction.interval == pytest.approx((nodes[0], nodes[-1]))
+
+
+@pytest.mark.parametrize(("orders", "sign"), [(1, 1.0), (3, -1.0), (-1, 1.0)])
+def test_parts_of_the_static_error(pair, orders, sign):
+    """F/K - mean(F/K) over a base pitch, or its first mesh orders by a sum of 4000 places."""
+    g = pair.geometry
+    laws = altered_elements(pair, Physics(static_error=sign, static_orders=orders))
+    force = pair.operating.pinion_torque / g.base_radius_pinion
+    phase = (np.arange(4000) + 0.5) / 4000
+    curve = force / total(pair, laws.stiffness, g.L_XA + phase * g.base_pitch)
+    xi = inside(pair)
+    expected = force / total(pair, laws.stiffness, xi) - curve.mean()
+    if orders > 0:
+        turns = 2j * np.pi * np.arange(1, orders + 1)[:, None]
+        waves = 2.0 * (curve * np.exp(-turns * phase)).mean(axis=1)
+        expected = (waves[:, None] * np.exp(turns * (xi - g.L_XA) / g.base_pitch)).sum(axis=0).real
+    assert laws.error(xi) == pytest.approx(sign * expected, abs=2e-3 * np.ptp(curve))
+
+
+def test_relief_stays_where_the_stiffness_is_altered(relieved):
+    """e(xi) is that of the drawing on the old path, and goes on along the flanks on a longer one."""
+    own = altered_elements(relieved, Physics()).error
+    g = relieved.geometry
+    xi = inside(relieved)
+    for label in ("reversed", "two levels"):
+        variant = choices_of(relieved, "stiffness over the mesh cycle")[label]
+        laws = altered_elements(variant.pair, variant.physics)
+        assert laws.error(xi) == pytest.approx(own(xi), abs=1e-10)
+    longer = altered_elements(relieved, Physics(path_start=-0.1, path_end=0.1))
+    assert longer.error(xi) == pytest.approx(own(xi), abs=1e-10)
+    beyond = np.array([g.L_XA - 0.05 * g.base_pitch, g.L_XD + 0.05 * g.base_pitch])
+    slopes = [9e-6, 14e-6] / np.array(
+        [g.L_XY - g.base_radius_gear * np.radians(24.0) - g.L_XA,
+         g.L_XD - g.base_radius_pinion * np.radians(25.0)]
+    )  # fmt: skip
+    expected = np.array([9e-6, 14e-6]) + slopes * 0.05 * g.base_pitch
+    assert longer.error(beyond) == pytest.approx(expected, rel=1e-6)
+
+
 def test_a_constant_stiffness_with_an_excitation(pair):
     """The error e of the constant mesh is F/K - F/mean K, or the force is -(K - mean K) F/mean K."""
     xi = inside(pair)

@@ -15,7 +15,7 @@ from validation.check.explanations.physics import Physics, motion_of
 from validation.check.explanations.registry import EXPLANATIONS
 from validation.check.ladder import climb
 from validation.check.problem import Problem
-from validation.check.search import Search, residual_of
+from validation.check.search import Path, Search, Step, residual_of
 from validation.check.words import ladder_words
 
 CHANNELS = ("dte", "x_p", "y_g", "mesh_force", "bearing_force_y_g")
@@ -86,6 +86,34 @@ def test_a_fixed_value_beats_a_free_factor(pair, motions):
     assert first.name == "series stiffness of both teeth"
     assert "mesh stiffness" in [one.name for one in first.alternatives]
     assert first.sentence.startswith("Compatible with ")
+
+
+def test_what_takes_something_else_away_counts_as_worse(motions):
+    """A reversed stiffness needs prescribed contact: under loaded contact one thing more than it says."""
+    pair = lumped.load_gear_pair("high_contact_ratio_29_47")
+    motion = lumped_motion(pair)
+    problem = Problem.of(pair, sampled(motion, CHANNELS), motion)
+    search = Search(problem, 600.0)
+    scores = {}
+    for form in ("loaded", "prescribed"):
+        own = pair.with_({"mesh.contact": form})
+        one = Search(replace(problem, pair=own), 600.0)
+        cause = EXPLANATIONS["stiffness over the mesh cycle"]
+        choice = next(c for c in cause.choices(one.problem, Variant(own)) if c.label == "reversed")
+        scores[form] = one.trial((Step(cause, choice),))
+    assert (scores["loaded"].side_effects, scores["prescribed"].side_effects) == (1, 0)
+    start = search.start()
+    worse = replace(start, trial=start.trial._replace(side_effects=1))
+    assert worse.score(1e-4) > 1.2 * start.score(1e-4)
+
+
+def test_a_mistake_comes_before_a_course_that_it_resembles(pair, motions):
+    """Of equal misfits the shape of a stiffness, which describes, stands behind a factor, which names."""
+    motion = lumped_motion(pair)
+    search = Search(Problem.of(pair, sampled(motion, CHANNELS), motion), 600.0)
+    steps = [Step(EXPLANATIONS[name], None, 0.01) for name in ("mesh stiffness", "slope of the stiffness")]
+    named, described = (Path((step,), search.start().trial) for step in steps)
+    assert described.score(1e-4) > 1.1 * named.score(1e-4)
 
 
 def test_explanations_of_one_motion_are_named_together(pair, motions):

@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from validation.check.explanations.cause import Cause, Choice, Kind, Variant
+from validation.check.explanations.fields import with_prescribed_contact
 from validation.check.explanations.friction_courses import Friction, reversal_of
 from validation.check.explanations.friction_inputs import FRICTION_INPUTS
 from validation.check.explanations.path_alterations import may_vary
@@ -19,14 +20,20 @@ from validation.check.problem import Problem
 #: Trial amplitudes of a profile error, in steps of so many micrometres.
 _ERRORS = (-1.0, -0.3, 0.3, 1.0)
 _MICROMETRES = 10.0
-#: Inputs of the pair whose stiffness over the mesh cycle is altered.
-_PRESCRIBED = {"mesh.contact": "prescribed", "mesh.relief": "ignored"}
 #: Places closer than this share of the base pitch are one.
 _APART = 5e-3
 #: Trial slopes and curvatures of a stiffness over its path, and trial lags [mesh cycles].
 _SHAPE = (-0.5, -0.2, 0.2, 0.5)
 _LAG = (-0.3, -0.1, 0.1, 0.3)
 _LATE = (0.001, 0.003, 0.01, 0.03)
+#: Parts of the static error that are added: mesh orders, label, words.
+_STATIC_PARTS = (
+    (-1, "without its mean", "the varying part"),
+    (1, "one order", "one mesh order"),
+    (2, "two orders", "two mesh orders"),
+    (3, "three orders", "three mesh orders"),
+    (5, "five orders", "five mesh orders"),
+)
 #: A load below this share of the largest one is none.
 _NO_LOAD = 1e-6
 _RAMPS = (0.03, 0.1, 0.2, 0.4)
@@ -273,6 +280,17 @@ def _static_error(problem: Problem, variant: Variant) -> list[Choice]:
     return [
         _altered("second excitation", words, static_error=1.0),
         _altered("second excitation, wrong sign", f"{words}, with the wrong sign", static_error=-1.0),
+        *(
+            _altered(
+                f"second excitation, {label}{ending}",
+                f"{part} of {words}{', with the wrong sign' * bool(ending)}",
+                static_error=sign,
+                static_orders=orders,
+            )
+            for orders, label, part in _STATIC_PARTS
+            for ending, sign in (("", 1.0), (", wrong sign", -1.0))
+            if orders != -1 or sign > 0.0  # else it differs by its mean alone, which may be removed
+        ),
         *_excited(problem, variant),
     ]
 
@@ -295,7 +313,7 @@ def _excited(problem: Problem, variant: Variant) -> Iterator[Choice]:
 
 def _prescribed(field: str) -> Callable[[Variant, float], Variant]:
     """Change of a variant by a free parameter of the stiffness, with prescribed contact."""
-    return lambda variant, value: variant.with_inputs(_PRESCRIBED).with_physics(**{field: value})
+    return lambda variant, value: with_prescribed_contact(variant).with_physics(**{field: value})
 
 
 def _dampers(problem: Problem, variant: Variant) -> list[Choice]:
@@ -333,8 +351,7 @@ def _pulling(problem: Problem, variant: Variant) -> list[Choice]:
     """A linear mesh; where teeth part also their other forces."""
     if variant.physics.pulling or variant.physics.contact:
         return []
-    words = "a linear mesh, in which teeth may pull, each by itself"
-    choices = [_altered("linear", words, pulling=True)]
+    choices = [_altered("linear", "a linear mesh, in which teeth may pull, each by itself", pulling=True)]
     if not takes_contact_force(variant) or not _parts(problem):
         return choices
     return [
@@ -401,19 +418,19 @@ def _over_cycle(problem: Problem, variant: Variant) -> list[Choice]:
         return []
 
     def change(name: str) -> Callable[[Variant], Variant]:
-        return lambda variant: variant.with_inputs(_PRESCRIBED).with_physics(stiffness=name)
+        return lambda variant: with_prescribed_contact(variant).with_physics(stiffness=name)
 
     return [Choice(name, words, change(name)) for name, words in texts.items()]
 
 
 def _variation(variant: Variant, value: float) -> Variant:
     """The variation of the stiffness of the whole mesh times a factor, with prescribed contact."""
-    return variant.with_inputs(_PRESCRIBED).with_physics(variation=variant.physics.variation * value)
+    return with_prescribed_contact(variant).with_physics(variation=variant.physics.variation * value)
 
 
 def _smoothing(variant: Variant, value: float) -> Variant:
     """The stiffness of the whole mesh averaged over a window [mesh cycles], with prescribed contact."""
-    return variant.with_inputs(_PRESCRIBED).with_physics(smoothing=value)
+    return with_prescribed_contact(variant).with_physics(smoothing=value)
 
 
 def _changing_error(wave: str) -> Callable[[Variant, float], Variant]:
@@ -570,6 +587,7 @@ def _causes() -> Iterator[Cause]:
         grid=(0.3, 0.6, 1.3, 1.8),
         change=_variation,
         words="the variation of the mesh stiffness about its mean times {value}",
+        describes=True,
         applies=lambda problem, variant: (
             not variant.physics.stiffness and not variant.pair.mesh.stiffness.whole_mesh
         ),
@@ -596,6 +614,7 @@ def _causes() -> Iterator[Cause]:
             grid=_ERRORS,
             neutral=0.0,
             change=_changing_error(wave),
+            describes=True,
             words=f"a profile error of all teeth, a {wave} of {{value}} um at the mesh frequency from A on",
             shown=lambda value: _MICROMETRES * value,
             applies=lambda problem, variant: (
@@ -624,7 +643,7 @@ def _causes() -> Iterator[Cause]:
     yield altered(
         "static error as an excitation",
         "the static transmission error as an excitation, beside the varying stiffness or in place of it",
-        "right and wrong sign; constant stiffness; stiffness as a force",
+        "right and wrong sign; one to five orders; constant stiffness; stiffness as a force",
         _static_error,
     )
     for field, meaning, grid in (
@@ -643,6 +662,7 @@ def _causes() -> Iterator[Cause]:
             change=_prescribed(field),
             words=f"{meaning}: {{value}}",
             applies=may_vary,
+            describes=field in ("slope", "curvature"),
         )
     yield Cause(
         name="place of the path of contact",

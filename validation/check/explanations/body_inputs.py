@@ -38,6 +38,8 @@ _OF_BOTH = (1e3, 1e-3)
 #: Trial factors of a mass, and of a bearing stiffness.
 _MASS = (0.12, 0.35, 0.6, 0.8, 1.25, 1.7, 2.8, 8.0, 25.0)
 _BEARING = (0.01, 0.1, 0.4, 2.5, 10.0, 100.0)
+#: Values of a bearing in one direction.
+_BEARING_KEYS = ("stiffness", "damping_ratio")
 
 
 def _bearing(pair: GearPair, key: str, value: float, gears: Sequence[str], lines: Sequence[str]) -> Fields:
@@ -148,7 +150,23 @@ def _disc(problem: Problem, variant: Variant) -> list[Choice]:
         ),
     }
     if any(bores):
-        discs["without bore"] = "gears as discs without bore", reference_radii(pair), (0.0, 0.0)
+        radii = reference_radii(pair)
+        discs["without bore"] = "gears as discs without bore", radii, (0.0, 0.0)
+        if all(bores):
+            discs["without bore: pinion"] = "a pinion as a disc without bore", radii, (0.0, bores[1])
+            discs["without bore: gear"] = "a gear as a disc without bore", radii, (bores[0], 0.0)
+        if bores[0] != bores[1]:
+            discs["bores exchanged"] = "gears as discs with the bore of the other gear", radii, bores[::-1]
+        discs["bore as a radius"] = (
+            "gears as discs with the diameter of the bore as its radius",
+            radii,
+            tuple(2.0 * bore for bore in bores),
+        )
+        discs["half of the bore"] = (
+            "gears as discs with half of the bore",
+            radii,
+            tuple(0.5 * bore for bore in bores),
+        )
     return [
         choice(label, words, constant(_discs(pair, radii, holes)))
         for label, (words, radii, holes) in discs.items()
@@ -169,7 +187,7 @@ def _values_of(pair: GearPair, what: str, gear: str) -> dict[str, float]:
     """Field without the name of the gear -> value of a gear: its bearings, or its mass and inertia."""
     if what == "bearings":
         bearing = getattr(pair.bearings, gear)
-        keys = [f"{line}_{key}" for line in LINES for key in ("stiffness", "damping_ratio")]
+        keys = [f"{line}_{key}" for line in LINES for key in _BEARING_KEYS]
         return {key: getattr(bearing, key) for key in keys}
     bodies = bodies_of(pair)
     return {key: getattr(bodies, f"{key}_{gear}") for key in ("mass", "inertia")}
@@ -186,34 +204,74 @@ def _given(pair: GearPair, what: str, sources: dict[str, str]) -> Fields:
 
 
 def _exchanged(problem: Problem, variant: Variant) -> list[Choice]:
-    """Bearings or masses of both gears exchanged; both directions of the bearings exchanged."""
+    """Bearings or masses of both gears exchanged, whole or in part; directions of the bearings exchanged."""
     pair = variant.pair
     if pair.shafts is not None:
         return []
-    lines = {
-        f"bearings.{gear}.{one}_{key}": getattr(getattr(pair.bearings, gear), f"{other}_{key}")
-        for gear in GEARS
-        for one, other in (LINES, LINES[::-1])
-        for key in ("stiffness", "damping_ratio")
-    }
     both = dict(zip(GEARS, GEARS[::-1], strict=True))
-    return [
-        choice(
-            "bearings",
-            "the bearings of pinion and gear exchanged",
-            constant(_given(pair, "bearings", both)),
+    bearings, masses = (_given(pair, what, both) for what in ("bearings", "masses"))
+    of_gears = {
+        gear: {
+            f"bearings.{gear}.{one}_{key}": getattr(getattr(pair.bearings, gear), f"{other}_{key}")
+            for one, other in (LINES, LINES[::-1])
+            for key in _BEARING_KEYS
+        }
+        for gear in GEARS
+    }
+    directions: Fields = of_gears["pinion"] | of_gears["gear"]
+    turned = "along and across the line of action exchanged"
+    cases = (
+        ("bearings", "the bearings of pinion and gear exchanged", bearings),
+        ("directions", f"bearing stiffness {turned}", directions),
+        ("masses", "masses and inertias of pinion and gear exchanged", masses),
+        *(
+            (f"directions of the {gear}", f"bearing stiffness of the {gear} {turned}", of_gears[gear])
+            for gear in GEARS
         ),
-        choice(
-            "directions",
-            "bearing stiffness along and across the line of action exchanged",
-            constant(lines),
+        *(
+            (
+                f"bearing {noun}",
+                f"the {noun} of the bearings of pinion and gear exchanged",
+                _part(bearings, key),
+            )
+            for noun, key in (("stiffness", "_stiffness"), ("damping", "_damping_ratio"))
         ),
-        choice(
-            "masses",
-            "masses and inertias of pinion and gear exchanged",
-            constant(_given(pair, "masses", both)),
+        *(
+            (
+                f"bearings {words}",
+                f"the bearings {words} the line of action of pinion and gear exchanged",
+                _part(bearings, f".{line}_"),
+            )
+            for line, words in zip(LINES, ("along", "across"), strict=True)
         ),
-    ]
+        *(
+            (
+                f"direction of the {noun}",
+                f"bearing {noun} {turned}, the other values as they are",
+                _part(directions, key),
+            )
+            for noun, key in (("stiffness", "_stiffness"), ("damping", "_damping_ratio"))
+        ),
+        ("masses alone", "the masses of pinion and gear exchanged, not the inertias", _part(masses, ".mass")),
+        (
+            "inertias alone",
+            "the inertias of pinion and gear exchanged, not the masses",
+            _part(masses, ".inertia"),
+        ),
+    )
+    choices = []
+    seen = [pair]
+    for label, words, fields in cases:
+        changed = pair.with_(dict(fields))
+        if changed not in seen:
+            seen.append(changed)
+            choices.append(choice(label, words, constant(fields)))
+    return choices
+
+
+def _part(fields: Fields, word: str) -> Fields:
+    """Fields with a word in their names."""
+    return {name: value for name, value in fields.items() if word in name}
 
 
 def _one_for_both(problem: Problem, variant: Variant) -> list[Choice]:
@@ -236,7 +294,7 @@ def _one_for_both(problem: Problem, variant: Variant) -> list[Choice]:
             f"bearings.{gear}.{other}_{key}": getattr(getattr(pair.bearings, gear), f"{line}_{key}")
             for gear in GEARS
             for other in LINES
-            for key in ("stiffness", "damping_ratio")
+            for key in _BEARING_KEYS
         }
         if pair.with_(fields) != pair:
             text = f"the bearing stiffness {words} the line of action in both directions"
@@ -260,13 +318,13 @@ def _causes() -> Iterator[Cause]:
     yield fixed_values(
         "radius of the discs",
         "mass and inertia of discs of another circle",
-        "tip circle, base circle, root circle, diameter, without bore",
+        "tip circle, base circle, root circle, diameter; without bore (both, one gear), other bores",
         _disc,
     )
     yield fixed_values(
         "exchanged",
         "values of pinion and gear, or of both directions, exchanged",
-        "bearings, directions, masses",
+        "bearings, masses: whole, in part; directions: both gears, one gear, stiffness, damping",
         _exchanged,
     )
     yield fixed_values(

@@ -89,6 +89,7 @@ class Cause:
     words : explanation of a free parameter, behind "compatible with", with the place {value}
     shown : free parameter -> number that a user reads
     applies : whether the pair allows the free parameter
+    describes : whether the cause is a course that many a mistake resembles, rather than a mistake
     part : which one of several causes of this name, such as a channel; empty: the only one
     """
 
@@ -103,6 +104,7 @@ class Cause:
     words: str = ""
     shown: Callable[[float], float] = field(default=lambda value: value)
     applies: Callable[[Problem, Variant], bool] = field(default=lambda problem, variant: True)
+    describes: bool = False
     part: str = ""
 
     @property

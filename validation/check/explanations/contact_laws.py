@@ -194,6 +194,30 @@ def with_table(pair: GearPair, elements: MeshElements, entries: int, *, spline: 
     return _of_whole_mesh(pair, elements, from_table, low + phases[:-1] * pitch)
 
 
+def with_table_of_pair(pair: GearPair, elements: MeshElements, entries: int) -> MeshElements:
+    """Return element laws whose stiffness of a tooth pair comes from a table over its path.
+
+    Entries are at equal steps of the base pitch from A on, zero behind D, with straight lines between them.
+    The line to the first zero reaches behind D. Negative: zero at A too.
+    """
+    stiffness = elements.stiffness
+    low, high = stiffness.interval
+    step = pair.geometry.base_pitch / abs(entries)
+    count = int(np.floor((high - low) / step * (1.0 - 1e-9))) + 2
+    nodes = np.asarray(low + step * np.arange(count), dtype=np.float64)
+    inside = np.clip(nodes, low + 1e-9 * step, high - 1e-9 * step)
+    values = np.where(nodes < high, stiffness(inside), 0.0)
+    if entries < 0:
+        values[0] = 0.0
+    new = (float(nodes[0]), float(nodes[-1]))
+
+    def from_table(xi: FloatArray) -> FloatArray:
+        return np.asarray(np.interp(xi, nodes, values))
+
+    changed = with_law(pair, elements, fitted(from_table, pair, elements, new, nodes), new)
+    return replace(changed, friction=_longer(pair, elements.friction, new))
+
+
 def _of_whole_mesh(
     pair: GearPair,
     elements: MeshElements,

@@ -208,6 +208,7 @@ def _causes() -> Iterator[Cause]:
         words="{value} um of relief at both tips",
         shown=lambda value: _MICROMETRES * value,
         applies=_can_be_relieved,
+        describes=True,
     )
     yield added
     yield replace(
@@ -221,6 +222,7 @@ def _causes() -> Iterator[Cause]:
         words="the amount of relief times {value}",
         shown=lambda value: value,
         applies=_acts,
+        describes=False,
     )
     yield fixed(
         "driving gear", "the other gear drives", "at its speed; with the numbers of the pinion", driving_gear

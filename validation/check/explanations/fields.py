@@ -41,6 +41,13 @@ def times(fields: Callable[[GearPair, float], Fields], value: float) -> Callable
     return lambda pair: fields(pair, value)
 
 
+def with_prescribed_contact(variant: Variant) -> Variant:
+    """Return a variant with prescribed contact. Relief is ignored where contact was loaded, else it stays."""
+    if variant.pair.mesh.contact == "prescribed":
+        return variant
+    return variant.with_inputs({"mesh.contact": "prescribed", "mesh.relief": "ignored"})
+
+
 def on_springs(problem: Problem, variant: Variant) -> bool:
     """Return whether the gears stand on springs, not on shafts."""
     return variant.pair.shafts is None

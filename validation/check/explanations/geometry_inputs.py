@@ -20,6 +20,7 @@ from validation.check.explanations.fields import (
     fixed_values,
     free_factor,
     reference_radii,
+    times,
     tip_radii,
 )
 from validation.check.problem import Problem
@@ -34,6 +35,9 @@ _CLEARANCE = 0.05
 #: Pressure angles of usual racks [degrees], and the least difference between two of them.
 _PRESSURE_ANGLES = (14.5, 15.0, 17.5, 20.0, 22.5, 25.0, 28.0, 30.0)
 _SAME_ANGLE = 0.01
+#: Addendum coefficients of usual racks, and the least difference between two of them.
+_ADDENDA = (1.0, 0.8, 1.25)
+_SAME_ADDENDUM = 0.01
 #: A module is 1 mm up to this length [mm].
 _SAME_MODULE = 0.01
 
@@ -175,6 +179,16 @@ def _other_shifts(pair: GearPair, none: Fields) -> Iterator[Choice]:
         yield choice(label, words, constant(fields))
 
 
+def _addendum_of_rack(problem: Problem, variant: Variant) -> list[Choice]:
+    """The addendum coefficient of another usual rack, with the tips that follow from it."""
+    own = variant.pair.basic_rack.addendum_coefficient
+    return [
+        choice(value, f"an addendum coefficient of {value:g}", times(_addendum, value / own))
+        for value in _ADDENDA
+        if abs(value / own - 1.0) > _SAME_ADDENDUM
+    ]
+
+
 def _number_of_teeth(problem: Problem, variant: Variant) -> list[Choice]:
     """One tooth or two more or less on a gear; tips and centre distance stay, or follow the teeth."""
     choices = []
@@ -233,6 +247,12 @@ def _causes() -> Iterator[Cause]:
     )
     yield fixed_values("one face width", "one face width for both gears", "pinion, gear", _one_width)
     yield free_factor("face width", "the face width of both gears", NEAR, _width)
+    yield fixed_values(
+        "addendum of the rack",
+        "the addendum coefficient of another usual rack",
+        ", ".join(f"{value:g}" for value in _ADDENDA),
+        _addendum_of_rack,
+    )
     yield free_factor("addendum", "the addendum coefficient of both gears", _LENGTH, _addendum)
     for gear in GEARS:
         yield free_factor(

@@ -17,6 +17,7 @@ import numpy as np
 from lumped.mesh.damper import damping_coefficient
 from lumped.path_function import PathFunction
 from lumped.quasi_static.elements import MeshElements, mean_of_pairs
+from lumped.quasi_static.tooth_error import relief_error, relief_starts, reliefs_of
 from lumped.schema.bodies import bodies_of
 from lumped.schema.pair import GearPair
 from lumped.stiffness.base import RAMP
@@ -182,12 +183,27 @@ def wave_error(pair: GearPair, cosine: float, sine: float) -> Callable[[FloatArr
 
 
 def static_error(
-    pair: GearPair, stiffness: PathFunction, factor: float
+    pair: GearPair, stiffness: PathFunction, factor: float, orders: int = 0
 ) -> Callable[[FloatArray], FloatArray]:
-    """Return the static deflection F/K(xi) of the mesh times a factor, as an error of all teeth [m]."""
+    """Return the static deflection F/K(xi) of the mesh times a factor, as an error of all teeth [m].
+
+    ``orders``: 0 for the whole deflection, -1 for its part that varies, n for its first n mesh orders.
+    """
     force = pair.operating.pinion_torque / pair.geometry.base_radius_pinion
-    total = total_of_pairs(pair, stiffness)
-    return lambda xi: np.asarray(factor * force / total(xi))
+    if orders <= 0:
+        total = total_of_pairs(pair, stiffness)
+        course = _course_of(pair, stiffness)
+        mean = float((force / course.values).mean()) if orders else 0.0
+        return lambda xi: np.asarray(factor * (force / total(xi) - mean))
+    course = _course_of(pair, stiffness)
+    waves = np.fft.rfft(force / course.values)[1 : orders + 1] * (2.0 / _COURSE)
+    numbers = np.arange(1, orders + 1)
+
+    def series(xi: FloatArray) -> FloatArray:
+        angle = 2.0 * np.pi * np.multiply.outer((xi - course.places[0]) / course.pitch, numbers)
+        return np.asarray(factor * (np.exp(1j * angle) @ waves).real)
+
+    return series
 
 
 def with_late_force(pair: GearPair, elements: MeshElements, delay: float) -> MeshElements:
@@ -305,8 +321,21 @@ def with_law(
         elements,
         stiffness=changed,
         damping=fitted(damping, pair, elements, interval, changed.breaks) if ratio else changed.scaled(0.0),
-        error=PathFunction.constant(0.0, *interval) if interval != stiffness.interval else elements.error,
+        error=elements.error if interval == stiffness.interval else _error_of_relief(pair, changed, interval),
     )
+
+
+def _error_of_relief(pair: GearPair, stiffness: PathFunction, interval: tuple[float, float]) -> PathFunction:
+    """Error of a tooth pair by the relief of both gears on another path of contact [m]."""
+    if pair.mesh.relief == "ignored" or not reliefs_of(pair).size:
+        return PathFunction.constant(0.0, *interval)
+    g = pair.geometry
+    places = np.concatenate([relief_starts(pair), stiffness.breaks, [g.L_XA, g.L_XD]])
+    marks = separate(places, pair, *interval)
+    size = float(np.abs(relief_error(pair, np.linspace(*interval, 401))).max())
+    breaks = np.concatenate([[interval[0]], marks, [interval[1]]])
+    tolerance = TOLERANCE * max(size, 1e-12)
+    return PathFunction.fit(lambda xi: relief_error(pair, xi), breaks, marks, tolerance=tolerance)
 
 
 def _smoother(

@@ -12,11 +12,9 @@ from lumped.stiffness.energy import EnergyStiffness
 from lumped.stiffness.parabolic import ParabolicStiffness
 from validation.check.explanations.cause import Cause, Choice, Kind, Variant
 from validation.check.explanations.contact_laws import COMPLIANCES, Compliance
-from validation.check.explanations.fields import reference_radii, tip_radii
+from validation.check.explanations.fields import reference_radii, tip_radii, with_prescribed_contact
 from validation.check.problem import Problem
 
-#: Inputs of the pair whose path of contact or stiffness is altered.
-_PRESCRIBED = {"mesh.contact": "prescribed", "mesh.relief": "ignored"}
 #: Trial lengths over the base pitch by which an end of the path of contact moves.
 _ENDS = (-0.6, -0.3, -0.1, 0.1, 0.3, 0.6)
 #: Trial places of the peak of a parabola over half the path.
@@ -24,6 +22,8 @@ _PEAKS = (-0.5, -0.2, 0.2, 0.5)
 #: Entries of a table of the mesh stiffness over the mesh cycle; negative: steps.
 _TABLES = (4, 5, 6, 8, 9, 10, 12, 15, 16, 20, -8, -10, -12, -16, -20, -24, -30, -36)
 _SPLINES = (8, 10, 12, 16, 20, 24)
+#: Entries of a table of the stiffness of a tooth pair in a base pitch; negative: none at A.
+_PAIR_TABLES = (-5, -6, -8, -10, -12, -16, -20, 5, 8, 10, 16, 20)
 #: Trial compliances in series with a tooth pair, over that of the mean stiffness of a pair.
 _SERIES = (-0.4, -0.2, 0.2, 0.5, 1.0)
 #: A path of contact is another one from this share of the base pitch on.
@@ -37,7 +37,7 @@ def may_vary(problem: Problem, variant: Variant) -> bool:
 
 def _changed(label: float | str, words: str, change: Callable[[Variant], Variant]) -> Choice:
     """A fixed value with prescribed contact."""
-    return Choice(label, words, lambda variant: change(variant.with_inputs(_PRESCRIBED)))
+    return Choice(label, words, lambda variant: change(with_prescribed_contact(variant)))
 
 
 def _path(start: float, end: float) -> Callable[[Variant], Variant]:
@@ -147,6 +147,9 @@ def _tables(problem: Problem, variant: Variant) -> list[Choice]:
     def change(entries: int, spline: bool = False) -> Callable[[Variant], Variant]:
         return lambda one: one.with_physics(table=entries, spline=spline)
 
+    def of_pair(entries: int) -> Callable[[Variant], Variant]:
+        return lambda one: one.with_physics(pair_table=entries)
+
     words = "a table of {} entries of the mesh stiffness over the mesh cycle, "
     choices = [
         _changed(
@@ -162,6 +165,15 @@ def _tables(problem: Problem, variant: Variant) -> list[Choice]:
             f"{entries}, spline", words.format(entries) + "joined by a cubic spline", change(entries, True)
         )
         for entries in _SPLINES
+    ]
+    choices += [
+        _changed(
+            f"{abs(entries)} of a tooth pair{', zero at A' if entries < 0 else ''}",
+            f"a table of {abs(entries)} entries a base pitch of the stiffness of a tooth pair, joined by "
+            f"straight lines{', zero at A and behind D' if entries < 0 else ', zero behind D'}",
+            of_pair(entries),
+        )
+        for entries in _PAIR_TABLES
     ]
     return choices
 
@@ -230,6 +242,7 @@ def _causes() -> Iterator[Cause]:
         grid: tuple[float, ...],
         change: Callable[[Variant, float], Variant],
         applies: Callable[[Problem, Variant], bool] = may_vary,
+        describes: bool = False,
     ) -> Cause:
         return Cause(
             name=name,
@@ -238,9 +251,10 @@ def _causes() -> Iterator[Cause]:
             span=span,
             grid=grid,
             neutral=0.0,
-            change=lambda variant, value: change(variant.with_inputs(_PRESCRIBED), value),
+            change=lambda variant, value: change(with_prescribed_contact(variant), value),
             words=f"{meaning}: {{value}}",
             applies=applies,
+            describes=describes,
         )
 
     pitches = f"about {_ENDS[0]:g} to {_ENDS[-1]:g} base pitches"
@@ -264,7 +278,7 @@ def _causes() -> Iterator[Cause]:
     )
     yield fixed(
         "table of the stiffness",
-        "a table of the mesh stiffness that is too coarse",
+        "a table of the stiffness of the mesh, or of a tooth pair, that is too coarse",
         f"{min(map(abs, _TABLES))} to {max(map(abs, _TABLES))} entries a mesh cycle; lines, steps, splines",
         _tables,
     )
@@ -293,6 +307,7 @@ def _causes() -> Iterator[Cause]:
         _PEAKS,
         lambda variant, value: variant.with_physics(peak=value),
         _is_parabola,
+        describes=True,
     )
     yield free(
         "compliance in series",

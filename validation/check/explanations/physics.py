@@ -44,6 +44,7 @@ from validation.check.explanations.contact_laws import (
     with_path,
     with_peak,
     with_table,
+    with_table_of_pair,
 )
 from validation.check.explanations.contact_motion import ContactForce, contact_motion
 from validation.check.explanations.error_laws import CommonError, with_common_error, with_relief_signs
@@ -153,8 +154,11 @@ class Physics:
     smoothing : window of a moving average of the stiffness of the whole mesh [mesh cycles]
     error_cosine, error_sine : amplitudes of a profile error of all teeth at the mesh frequency, from A on [m]
     static_error : factor with which the static deflection of the mesh is an error of all teeth
+    static_orders : mesh orders that this error has; 0: all with the mean, -1: all without it
     relief_pinion, relief_gear : factors on the relief of each gear in the error of the teeth
     common_error : one error for all tooth pairs in contact
+    pair_table : entries of a table of the stiffness of a tooth pair in each base pitch from A on, joined by
+        straight lines; negative: without stiffness at A, as outside of contact; 0: no table
     spline : whether the table of the stiffness is joined by a cubic spline
     most_pairs : most tooth pairs that carry load, the newest; negative: the oldest; 0: all
     last_value_held : whether the stiffness stays as at D up to the next whole mesh cycle
@@ -201,9 +205,11 @@ class Physics:
     error_cosine: float = 0.0
     error_sine: float = 0.0
     static_error: float = 0.0
+    static_orders: int = 0
     relief_pinion: float = 1.0
     relief_gear: float = 1.0
     common_error: CommonError = ""
+    pair_table: int = 0
     spline: bool = False
     most_pairs: int = 0
     last_value_held: bool = False
@@ -245,6 +251,7 @@ _OF_STIFFNESS = (
     "path_start",
     "path_end",
     "table",
+    "pair_table",
     "compliance",
     "peak",
     "most_pairs",
@@ -439,6 +446,8 @@ def altered_elements(pair: GearPair, physics: Physics) -> MeshElements:
         elements = with_smoothing(pair, elements, physics.smoothing)
     if physics.table:
         elements = with_table(pair, elements, physics.table, spline=physics.spline)
+    if physics.pair_table:
+        elements = with_table_of_pair(pair, elements, physics.pair_table)
     if physics.most_pairs:
         elements = with_fewer_pairs(pair, elements, physics.most_pairs)
     if physics.last_value_held:
@@ -458,7 +467,8 @@ def altered_elements(pair: GearPair, physics: Physics) -> MeshElements:
     if physics.error_cosine or physics.error_sine:
         elements = with_error(pair, elements, wave_error(pair, physics.error_cosine, physics.error_sine))
     if physics.static_error:
-        elements = with_error(pair, elements, static_error(pair, elements.stiffness, physics.static_error))
+        deflection = static_error(pair, elements.stiffness, physics.static_error, physics.static_orders)
+        elements = with_error(pair, elements, deflection)
     if physics.damper != "of each pair":
         factor = damper_factor(pair, elements, physics.damper)
         damping = fitted(lambda xi: elements.damping(xi) * factor(xi), pair, elements)
