@@ -1,7 +1,8 @@
 """Compilation during the first run on a machine.
 
-The first run compiles for about a minute. A second process compiles at the same time, and the progress bar
-shows the number of compiled functions.
+The first run compiles for about a minute, and the progress bar shows the number of compiled functions. Of a
+cross-check a second process compiles the second program meanwhile; the second process of a report, see
+``validation.reporting.second_process``, compiles what it computes.
 """
 
 from __future__ import annotations
@@ -21,36 +22,43 @@ _FUNCTIONS = 150
 
 
 @contextmanager
-def compiling(bar: Progress) -> Iterator[Progress]:
-    """Compile in a second process while the block runs. Yields the progress function for the block.
-
-    The second process compiles the multibody model and the stability charts, which the block needs last.
-    Meanwhile the block compiles the lumped model with contact loss and computes samples. If both processes
-    need the same kernel, the second waits until the first has compiled the kernel.
-    """
+def counted(bar: Progress) -> Iterator[Progress]:
+    """Count compiled functions while the block runs. Yields the progress function for the block."""
     from numba.core import event
-
-    from lumped.cache import cores
 
     event.Listener.register(_Listener)
     listener = _Listener(bar)
     event.register("numba:compile", listener)
-    helper = _start() if cores() > 1 and not _all_stored() else None
     try:
         yield listener.tell
     finally:
         event.unregister("numba:compile", listener)
+
+
+@contextmanager
+def compiling(bar: Progress) -> Iterator[Progress]:
+    """Compile the multibody model in a second process while the block runs. Yields the progress function.
+
+    Meanwhile the block compiles the lumped model with contact loss. If both processes need the same kernel,
+    the second waits until the first has compiled the kernel.
+    """
+    from lumped.cache import cores
+
+    helper = _start() if cores() > 1 and not _all_stored() else None
+    try:
+        with counted(bar) as tell:
+            yield tell
+    finally:
         if helper is not None:
             helper.kill()
             helper.wait()
 
 
 def _all_stored() -> bool:
-    from floquet.rank_one.kernels.taylor import propagate_points
     from lumped.compiler import is_stored
     from multibody.run.integration import bridge
 
-    return is_stored(propagate_points) and is_stored(bridge)
+    return is_stored(bridge)
 
 
 def _start() -> subprocess.Popen[bytes]:
@@ -81,15 +89,12 @@ class _Listener:
 
 
 def main() -> None:
-    """Compute a multibody motion and a chart of one point. Numba stores the compiled kernels."""
+    """Compute a multibody motion. Numba stores the compiled kernels."""
     gc.set_threshold(1_000_000)  # as in the command itself; by default a tenth of the time goes there
-    import floquet
     import multibody
     from lumped import load_gear_pair
 
-    pair = load_gear_pair("nasa_28_28")
-    multibody.steady_state(pair, samples_per_cycle=32)
-    floquet.stability_chart(pair, {"speed_rpm": [4000.0]})
+    multibody.steady_state(load_gear_pair("nasa_28_28"), samples_per_cycle=32)
 
 
 if __name__ == "__main__":

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from validation.commands import options as opt
-from validation.commands.kernels import compiling
+from validation.commands.kernels import compiling, counted
 from validation.commands.terminal import FAILED, guarded, print_json, progress_bar, show, stderr, stdout
 from validation.files.formatting import number
 
@@ -72,7 +72,9 @@ def report(
         raise refuse("--require", "record", "with a record", "Add --record FILE.")
     check_target(output, force=force)
     name, gear_pair = pair
-    with progress_bar("report") as bar, compiling(bar) as tell:
+    from validation.reporting.second_process import second_process
+
+    with progress_bar("report") as bar, second_process(), counted(bar) as tell:
         tell(0.0, "loading")
         from validation.reporting import report as write  # the bar is there and the second process runs
 

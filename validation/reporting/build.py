@@ -43,7 +43,11 @@ from validation.reporting.page_without_motion import first_page, static_numbers
 from validation.reporting.pictures import draw_pictures
 from validation.reporting.relations import failed_checks
 from validation.reporting.results import Results
+from validation.reporting.second_process import present_process
 from validation.reporting.tables import write_tables
+
+#: Chapters that read the range over speed.
+_LAST = ("contact_loss", "evidence")
 
 
 @dataclass(frozen=True, repr=False)
@@ -129,7 +133,9 @@ def report(
         # The page says where a law is outside its range at the operating point; each speed and sample more
         # would say it again.
         warnings.simplefilter("ignore", LawRangeWarning)
-        results = Results(gear_pair, QUICK if quick else FULL, named, record=measured)
+        results = Results(
+            gear_pair, QUICK if quick else FULL, named, record=measured, process=present_process()
+        )
         if early is not None:
             tell(0.0, "motion")
             known = results.without_motion is None
@@ -137,12 +143,16 @@ def report(
                 title(results),
                 first_numbers(results.prediction) if known else static_numbers(results.static),
             )
+        if results.process is not None:
+            with suppress(NumericalError):  # page 1 says why
+                _ = results.like_loses_contact  # for which jumps in the second process wait
         # Chapters and figures import matplotlib, for which the first numbers need not wait.
         from validation.reporting.chapters import CHAPTERS
         from validation.reporting.first_figures import first_figures
         from validation.reporting.page import render
 
-        chapters = written(results, CHAPTERS, lambda f, stage="", /: tell(0.85 * f, stage))
+        figures = folder / "figures"
+        chapters, images = written(results, CHAPTERS, figures, lambda f, stage="", /: tell(0.9 * f, stage))
         first = first_page(results)
         pictures: tuple[Picture, ...] = ()
         if results.without_motion is None:
@@ -150,7 +160,7 @@ def report(
                 pictures = first_figures(results)
         blocks = [block for _, content in chapters for block in content.blocks]
         every = (*pictures, *(block for block in blocks if isinstance(block, Picture)))
-        images = draw_pictures(every, folder / "figures", lambda share: tell(0.85 + 0.12 * share, "figures"))
+        images |= draw_pictures(pictures, figures, lambda share: tell(0.9 + 0.07 * share, "figures"))
         tell(0.97, "data")
         _write_data(results, folder / "data")
         (folder / "tables").mkdir()
@@ -203,10 +213,16 @@ def findings(results: Results) -> frozenset[str]:
     return frozenset(name for name, holds in conditions.items() if holds)
 
 
-def written(results: Results, chapters: Sequence[Chapter], progress: Progress) -> tuple[Written, ...]:
-    """Write the chapters, without those that the report leaves out."""
+def written(
+    results: Results, chapters: Sequence[Chapter], figures: Path, progress: Progress
+) -> tuple[tuple[Written, ...], dict[str, str]]:
+    """Write the chapters, without those that the report leaves out, and draw their pictures.
+
+    Returns the chapters, and key of a picture -> data URI. ``figures``: folder of the pictures.
+    """
     total = sum(chapter.seconds for chapter in chapters)
     made: list[Written] = []
+    images: dict[str, str] = {}
     done = shown = 0.0
 
     def tell(first: float, seconds: float, fraction: float, stage: str = "", /) -> None:
@@ -214,14 +230,21 @@ def written(results: Results, chapters: Sequence[Chapter], progress: Progress) -
         shown = max(shown, (first + fraction * seconds) / total)  # a chapter may compute several results
         progress(shown, stage)
 
-    # Samples first, charts last: another process compiles the second program meanwhile, and then the charts.
-    for chapter in sorted(chapters, key=lambda one: (one.key == "stability") - (one.key == "how_sure")):
+    # Samples first, the range over speed last: a second process computes it meanwhile, and draws no pictures.
+    for chapter in sorted(chapters, key=lambda one: (one.key in _LAST) - (one.key == "how_sure")):
         results.progress = partial(tell, done, chapter.seconds)
         content = _content(chapter, results)
+        done += chapter.seconds
         if content is not None:
             made.append((chapter, content))
-        done += chapter.seconds
-    return tuple(sorted(made, key=lambda one: chapters.index(one[0])))
+            pictures = [block for block in content.blocks if isinstance(block, Picture)]
+            images |= draw_pictures(pictures, figures, partial(_drawing, partial(tell, done)))
+    return tuple(sorted(made, key=lambda one: chapters.index(one[0]))), images
+
+
+def _drawing(tell: Callable[[float, float, str], None], _: float, /) -> None:
+    """Say that figures are drawn, which has no share of the bar."""
+    tell(0.0, 0.0, "figures")
 
 
 def _content(chapter: Chapter, results: Results) -> Content | None:

@@ -12,13 +12,13 @@ from validation.reporting.blocks import Picture
 def draw_pictures(
     pictures: Sequence[Picture], folder: Path, tell: Callable[[float], None] | None = None
 ) -> dict[str, str]:
-    """Draw pictures into a new folder. Returns key of a picture -> data URI of its file.
+    """Draw pictures into a folder. Returns key of a picture -> data URI of its file.
 
     ``tell`` is told the done share before each picture.
     """
     from validation.plots.style import save
 
-    folder.mkdir()
+    folder.mkdir(exist_ok=True)
     images = {}
     for count, picture in enumerate(pictures):
         if tell is not None:

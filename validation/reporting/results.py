@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from functools import cached_property
 from typing import Any, NamedTuple, Self, TypeVar, overload
 
@@ -60,6 +61,7 @@ from validation.prediction.uncertainty import (
 )
 from validation.reporting.effort import Effort
 from validation.reporting.hazards import Hazard, beats_and_chaos, nearest_of
+from validation.reporting.second_process import WORK, SecondProcess, warn_again
 from validation.signals.findings import TeethFindings
 from validation.validity.flags import Flag, validity_flags
 from validation.validity.plausibility import parameter_warnings
@@ -90,7 +92,10 @@ T = TypeVar("T")
 
 
 class computed_once(cached_property[T]):
-    """A property that is computed at the first use. A NumericalError is kept as well, and raised again."""
+    """A property that is computed at the first use, by the second process where the results have one.
+
+    A NumericalError is kept as well, and raised again.
+    """
 
     @overload
     def __get__(self, instance: None, owner: type[Any] | None = None) -> Self: ...
@@ -105,10 +110,15 @@ class computed_once(cached_property[T]):
         if name in failures:
             raise failures[name]
         try:
-            return super().__get__(instance, owner)
+            if instance.from_second_process(name):
+                return instance.__dict__[name]
+            value = super().__get__(instance, owner)
         except NumericalError as error:
             failures[name] = error
             raise
+        if instance.process is not None:
+            instance.process.give(name, value)
+        return value
 
 
 class RecordExplanations(NamedTuple):
@@ -132,6 +142,7 @@ class Results:
     name : how a command names the pair: a file or a preset
     progress : called with the finished fraction and the name of the present computation
     record : a measured record of the pair at its operating point
+    process : a second process, which computes a part of the results. None: this process computes them all
 
     Raises
     ------
@@ -145,6 +156,7 @@ class Results:
         name: str = "",
         progress: Progress | None = None,
         record: Curves | None = None,
+        process: SecondProcess | None = None,
     ) -> None:
         self.given = pair
         self.pair = pair.healthy
@@ -153,6 +165,28 @@ class Results:
         self.effort = effort
         self.name = name or pair.name
         self.progress: Progress = progress or (lambda fraction, stage="", /: None)
+        self.process = process
+        if process is not None:
+            process.begin(pair, effort, self.name)
+
+    def from_second_process(self, name: str) -> bool:
+        """Take a result of the second process, or raise its NumericalError. False: compute it here.
+
+        While the second process computes the result, this one computes others that are needed later.
+        """
+        if self.process is None or name not in WORK:
+            return False
+        while self.process.computes(name) and (other := self.process.spare(vars(self))) is not None:
+            with suppress(NumericalError):  # it is kept, and raised where the result is used
+                getattr(self, other)
+        answer = self.process.fetch(name, self.progress)
+        if answer is None:
+            return False
+        warn_again(answer)
+        if answer.error is not None:
+            raise answer.error
+        vars(self)[name] = answer.value
+        return True
 
     def stage(self, name: str) -> Progress:
         """Report the start of a computation. Return the function that takes the finished fraction."""
@@ -182,6 +216,11 @@ class Results:
         """The motion at the operating point with like teeth."""
         self.stage("motion")
         return predicted(self.pair)
+
+    @computed_once
+    def like_loses_contact(self) -> bool:
+        """Whether like teeth lose contact at the operating point."""
+        return self.like.contact_lost
 
     @property
     def without_motion(self) -> NumericalError | None:
@@ -224,12 +263,8 @@ class Results:
     def second(self) -> Prediction | Absent:
         """The motion of the second program at the operating point, on shafts where the pair has shafts."""
         if self.pair.shafts is not None:
-            self.stage("second program on the shafts")
-            try:
-                machine = multibody.steady_state(self.pair, supports="shafts", samples_per_cycle=_SAMPLES)
-            except (NumericalError, ParameterError) as error:
-                return Absent(Outcome.FAILED, str(error))
-            return measured(self.pair, machine, Motion.SECOND)
+            machine = self.run_on_shafts
+            return machine if isinstance(machine, Absent) else measured(self.pair, machine, Motion.SECOND)
         if isinstance(self.check, Absent):
             return self.check
         run = self.check.multibody.get("exact")
@@ -241,6 +276,17 @@ class Results:
         period = self.pair.geometry.mesh_period
         last = run.sel(time=slice(float(run["time"][-1]) - 1.000001 * period, None)).isel(time=slice(1, None))
         return measured(self.pair, last, Motion.SECOND)
+
+    @computed_once
+    def run_on_shafts(self) -> xr.Dataset | Absent:
+        """Run of the second program on the shafts of the pair. Absent: it has none, or the run fails."""
+        if self.pair.shafts is None:
+            return Absent(Outcome.NOT_ASKED)
+        self.stage("second program on the shafts")
+        try:
+            return multibody.steady_state(self.pair, supports="shafts", samples_per_cycle=_SAMPLES)
+        except (NumericalError, ParameterError) as error:
+            return Absent(Outcome.FAILED, str(error))
 
     @computed_once
     def uncertainty(self) -> xr.Dataset | Absent:
@@ -299,7 +345,7 @@ class Results:
     @computed_once
     def teeth_band(self) -> xr.Dataset | None:
         """Range of the results of unlike teeth. None: the teeth are alike, or the inputs are not varied."""
-        if self.teeth is None or isinstance(self.uncertainty, Absent):
+        if self.given is self.pair or isinstance(self.uncertainty, Absent):
             return None
         self.stage("range of teeth that differ")
         return teeth_band(self.given, self.uncertainty, self.effort.band_seconds)
@@ -312,7 +358,7 @@ class Results:
         lose contact, so that no ratio to them says what the errors do.
         """
         machines = self.effort.drawn_machines
-        if self.teeth is not None or not machines or not self.varies or self.like.contact_lost:
+        if self.given is not self.pair or not machines or not self.varies or self.like_loses_contact:
             return None
         samples = self.uncertainty
         self.stage("teeth of an assumed class")
@@ -361,7 +407,7 @@ class Results:
         """Ranges of speed [rpm] in which like teeth on springs can lose contact, within ``speeds``."""
         windows = contact_loss_windows(self.sweep, self.speeds)
         speed = self.operating_rpm
-        if not self.like.contact_lost or any(low <= speed <= high for low, high in windows):
+        if not self.like_loses_contact or any(low <= speed <= high for low, high in windows):
             return windows
         lowest, highest = self.speeds
         about = max((1.0 - _ABOUT) * speed, lowest), min((1.0 + _ABOUT) * speed, highest)

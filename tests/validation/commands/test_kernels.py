@@ -8,9 +8,7 @@ from types import SimpleNamespace
 
 import pytest
 
-import floquet
 import multibody
-from floquet.rank_one.kernels.taylor import propagate_points
 from lumped import load_gear_pair
 from multibody.contact.kernels import tooth_forces
 from multibody.run.integration import bridge
@@ -56,12 +54,11 @@ def test_what_is_compiled_is_told_and_the_fraction_stays() -> None:
     assert announced[-1][1] == "compiling, once for this machine, for a minute: 2 of about 150 functions"
 
 
-def test_the_second_process_compiles_what_charts_and_runs_of_any_pair_take() -> None:
+def test_the_second_process_compiles_what_runs_of_any_pair_take() -> None:
     kernels.main()
-    compiled = (propagate_points, bridge, tooth_forces)
+    compiled = (bridge, tooth_forces)
     before = [len(kernel.signatures) for kernel in compiled]
     pair = load_gear_pair("fzg_c").with_({"mesh.contact": "loaded"})
-    floquet.stability_chart(pair, {"speed_rpm": [900.0, 1000.0], "damping_ratio": [0.02, 0.05]})
     multibody.simulate(pair, 1)
-    assert before == [1, 1, 1] == [len(kernel.signatures) for kernel in compiled]
+    assert before == [1, 1] == [len(kernel.signatures) for kernel in compiled]
     assert kernels._all_stored()
