@@ -41,6 +41,116 @@ class FreeSteps(NamedTuple):
     reach: FloatArray
 
 
+class FreeEquations(NamedTuple):
+    """Equations of motion without the mesh, z'' = K z + C v + f, and the directions of the mesh forces.
+
+    Attributes
+    ----------
+    constant : (m, 2m + forcings) K, C, then f of each forcing
+    deflection : (m,) u
+    directions : (forces, m) acceleration of the coordinates per unit of each force of the mesh
+    nodes : (s,) c of the method
+    to_rate, to_place : (s,) b and b a: v and z at the end of a step of length 1 per acceleration at a stage
+    between : (s, s) a: v at the stages per acceleration at a stage
+    with_rates : whether the rates of all coordinates at the stages are further rows of ``FreeSteps``
+    """
+
+    constant: FloatArray
+    deflection: FloatArray
+    directions: FloatArray
+    nodes: FloatArray
+    to_rate: FloatArray
+    to_place: FloatArray
+    between: FloatArray
+    with_rates: bool
+
+
+@inlined
+def add_acceleration(
+    acceleration: float, stage: int, coordinate: int, h: float, equations: FreeEquations, rows: FloatArray
+) -> None:
+    """Add what an acceleration W of one coordinate at one stage does to the rows of ``FreeSteps``.
+
+    p = u W at this stage; z + h^2 (b a) W and v + h b W at the end; v + h a W at the stages.
+    """
+    stages = equations.nodes.size
+    m = equations.deflection.size
+    rows[stage] += equations.deflection[coordinate] * acceleration
+    rows[stages + coordinate] += h * h * equations.to_place[stage] * acceleration
+    rows[stages + m + coordinate] += h * equations.to_rate[stage] * acceleration
+    if equations.with_rates:
+        for other in range(stages):
+            row = stages + 2 * m + other * m + coordinate
+            rows[row] += h * equations.between[other, stage] * acceleration
+
+
+@inlined
+def add_coasting(column: int, h: float, equations: FreeEquations, rows: FloatArray) -> None:
+    """Add the rows of a unit state without accelerations: z + h v and v at the end, v at the stages."""
+    stages = equations.nodes.size
+    m = equations.deflection.size
+    if column < 2 * m:
+        rows[stages + column] += 1.0
+    if m <= column < 2 * m:
+        rows[stages + column - m] += h
+        if equations.with_rates:
+            for stage in range(stages):
+                rows[stages + 2 * m + stage * m + column - m] += 1.0
+
+
+@compiled(nogil=True)
+def add_free_steps(
+    lengths: FloatArray, inverse: FloatArray, equations: FreeEquations, free: FreeSteps
+) -> None:
+    """Add to ``along`` and ``by_force``, which are 0 before, those of some step lengths (k,) [s].
+
+    The accelerations at the stages are W = Y (K (z + h c v) + C v + f) by the constant part, and W = Y n by
+    the mesh.
+
+    Parameters
+    ----------
+    inverse : (k, groups, s, coupled, s, coupled) Y of each group of coupled coordinates
+    """
+    stages = equations.nodes.size
+    m = equations.deflection.size
+    constant = equations.constant
+    coupled = inverse.shape[3]
+    steady = np.empty(coupled)  # W by forces that are alike at all stages, and by forces that grow with c
+    growing = np.empty(coupled)
+    for length in range(lengths.size):
+        h = lengths[length]
+        for coordinate in range(m):
+            group = coordinate // coupled
+            first = group * coupled
+            for stage in range(stages):
+                of_stage = inverse[length, group, stage, coordinate - first]
+                for i in range(coupled):
+                    steady[i] = 0.0
+                    growing[i] = 0.0
+                    for other in range(stages):
+                        steady[i] += of_stage[other, i]
+                        growing[i] += equations.nodes[other] * of_stage[other, i]
+                for column in range(constant.shape[1]):
+                    acceleration = 0.0
+                    for i in range(coupled):
+                        acceleration += steady[i] * constant[first + i, column]
+                        if m <= column < 2 * m:
+                            acceleration += growing[i] * h * constant[first + i, column - m]
+                    if acceleration != 0.0:
+                        rows = free.along[length, column]
+                        add_acceleration(acceleration, stage, coordinate, h, equations, rows)
+                for other in range(stages):
+                    for number in range(equations.directions.shape[0]):
+                        acceleration = 0.0
+                        for i in range(coupled):
+                            acceleration += of_stage[other, i] * equations.directions[number, first + i]
+                        if acceleration != 0.0:
+                            rows = free.by_force[length, other, number]
+                            add_acceleration(acceleration, stage, coordinate, h, equations, rows)
+        for column in range(constant.shape[1]):  # last: what is small beside 1 is summed without it
+            add_coasting(column, h, equations, free.along[length, column])
+
+
 class Propagated(NamedTuple):
     """Columns that ``propagate`` has taken through steps; the first columns are recorded at every step.
 

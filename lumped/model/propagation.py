@@ -12,11 +12,19 @@ import numpy as np
 from lumped.errors import NumericalError, SlowPairError
 from lumped.gauss_legendre import ButcherTableau, gauss_tableau
 from lumped.mesh.records import BY_APPROACH, BY_RATE
-from lumped.model.kernels import FreeSteps, chained, merged, propagate, states_along
+from lumped.model.kernels import (
+    FreeEquations,
+    FreeSteps,
+    add_free_steps,
+    chained,
+    merged,
+    propagate,
+    states_along,
+)
 from lumped.model.mesh_cycle import is_edge
 from lumped.model.periodic_system import LTVSystem
 from lumped.model.speeds_together import MeshTimes, forces_together
-from lumped.typing import FloatArray, IntArray
+from lumped.typing import ComplexArray, FloatArray, IntArray
 
 #: Largest angle per step of the fastest frequency [rad]. With 4 stages (order 8) the local error constant is
 #: (4!)^4 / (9 (8!)^3) = 5.6e-10, so a step of 0.5 rad errs by about 1e-12.
@@ -33,8 +41,6 @@ _BLOCK = 1024
 _MOST_STORED = 4_000_000
 _MOST_INTERVALS = 16384
 _ALWAYS_STORED = 4096
-#: Lengths of steps whose steps without the mesh are computed at once: so few numbers stay in the cache.
-_LENGTHS = 48
 #: Most steps of systems that are computed together: their numbers then stay in the cache of a processor.
 _TOGETHER_STEPS = 1024
 #: Most steps of a mesh cycle; so many take some ten seconds.
@@ -356,88 +362,77 @@ def without_mesh(
     directions : (forces, m) acceleration of the coordinates per unit of each force
     with_rates : whether the rates of all coordinates at the stages are further rows
     """
-    parts = [
-        _block_without_mesh(system, h[low : low + _LENGTHS], extra, gauss, directions, with_rates)
-        for low in range(0, h.size, _LENGTHS)
-    ]
-    return parts[0] if len(parts) == 1 else FreeSteps(*map(np.concatenate, zip(*parts, strict=True)))
-
-
-def _block_without_mesh(
-    system: LTVSystem,
-    h: FloatArray,
-    extra: FloatArray,
-    gauss: ButcherTableau,
-    directions: FloatArray,
-    with_rates: bool,
-) -> FreeSteps:
-    """``without_mesh`` of few lengths."""
-    a, b, c = gauss
-    s = c.size
     m = system.size // 2
-    k = h.size
-    u = system.deflection
-    stiffness = system.constant[m:, :m]
-    damping = system.constant[m:, m:]
-    forces = np.column_stack([system.torque_pinion * system.pinion_torque, extra])[m:]
-    lengths = h
-    h = h[:, None, None]
-    inverse = _inverse_of_stages(system, lengths, a)
-    groups, coupled = inverse.shape[1:4:2]
-    right = np.zeros((k, s, m, 2 * m + forces.shape[1]))
-    right[..., :m] = stiffness
-    right[..., m : 2 * m] = h[..., None] * np.multiply.outer(c, stiffness) + damping
-    right[..., 2 * m :] = forces
-    columns = right.shape[-1]
-    by_group = right.reshape(k, s, groups, coupled, columns).swapaxes(1, 2)
-    solved = inverse.reshape(k, groups, s * coupled, -1) @ by_group.reshape(k, groups, s * coupled, columns)
-    accelerations = solved.reshape(by_group.shape).swapaxes(1, 2).reshape(right.shape)
-    to_end = np.stack([h[:, 0] ** 2 * (b @ a), h[:, 0] * b], axis=1)  # (k, 2, s)
-    end = np.einsum("kds,ksmx->kdmx", to_end, accelerations).reshape(k, 2 * m, columns)
-    end[:, :, : 2 * m] += np.eye(2 * m)
-    end[:, :m, m : 2 * m] += h * np.eye(m)
-    along = [np.einsum("m,ksmx->ksx", u, accelerations), end]
-    # Accelerations (k, stages, m, stages, forces) at the stages by unit forces at the stages.
-    number = len(directions)
-    by_unit = np.einsum("kgrnsi,fgi->krgnsf", inverse, directions.reshape(number, groups, coupled))
-    by_unit = by_unit.reshape(k, s, m, s, number)
-    moves = np.einsum("kdr,krmsf->ksfdm", to_end, by_unit)
-    by_force = [np.einsum("m,krmsf->ksfr", u, by_unit), moves.reshape(k, s, number, 2 * m)]
-    if with_rates:
-        rates = h[..., None] * np.einsum("jr,krmx->kjmx", a, accelerations)
-        rates[..., m : 2 * m] += np.eye(m)
-        along.append(rates.reshape(k, s * m, columns))
-        rates_by_force = h[..., None, None] * np.einsum("jr,krmsf->ksfjm", a, by_unit)
-        by_force.append(rates_by_force.reshape(k, s, number, s * m))
-    return FreeSteps(
-        along=np.ascontiguousarray(np.concatenate(along, axis=1).swapaxes(1, 2)),
-        by_force=np.ascontiguousarray(np.concatenate(by_force, axis=3)),
-        by_p=np.concatenate([h**2 * (a @ a), h * a], axis=1),
-        reach=np.multiply.outer(lengths, c),
+    stages = gauss.b.size
+    forcings = np.column_stack([system.torque_pinion * system.pinion_torque, extra])
+    equations = FreeEquations(
+        constant=np.hstack([system.constant[m:], forcings[m:]]),
+        deflection=np.ascontiguousarray(system.deflection),
+        directions=np.ascontiguousarray(directions),
+        nodes=gauss.c,
+        to_rate=gauss.b,
+        to_place=gauss.b @ gauss.a,
+        between=gauss.a,
+        with_rates=with_rates,
     )
+    rows = stages + 2 * m + (stages * m if with_rates else 0)
+    of_length = h[:, None, None]
+    free = FreeSteps(
+        along=np.zeros((h.size, equations.constant.shape[1], rows)),
+        by_force=np.zeros((h.size, stages, len(directions), rows)),
+        by_p=np.concatenate([of_length**2 * (gauss.a @ gauss.a), of_length * gauss.a], axis=1),
+        reach=np.multiply.outer(h, gauss.c),
+    )
+    add_free_steps(h, _inverse_of_stages(system, h, gauss.a), equations, free)
+    return free
 
 
 def _inverse_of_stages(system: LTVSystem, h: FloatArray, a: FloatArray) -> FloatArray:
     """Inverse of the equations W - h^2 (a a) K W - h a C W = f for the accelerations W at the stages.
 
+    With the eigenvalues of a = V diag(lambda) V^-1 the equations fall apart into those of one stage,
+
+        (1 - h^2 lambda^2 K - h lambda C) W = f.
+
     Only coordinates of one group are coupled: on springs each is a group of its own, on shafts all are one.
-    The result (k, groups, stages, coordinates, stages, coordinates) has an inverse for each group.
+    The result (k, groups, s, coupled, s, coupled) has an inverse for each group.
+
+    Source: J. C. Butcher, BIT 16 (1976) 237-240.
     """
     m = system.size // 2
+    s = len(a)
     stiffness, damping = (np.asarray(part) for part in np.split(system.constant[m:], 2, axis=1))
     single = not any(np.count_nonzero(part - np.diag(part.diagonal())) for part in (stiffness, damping))
-    coupled = 1 if single else m
-    h = h[:, None, None, None, None, None]
-    implicit = np.zeros((h.size, m // coupled, a.shape[0], coupled, a.shape[0], coupled))
-    for part, by_stages in (
-        (stiffness, h**2 * (a @ a)[:, None, :, None]),
-        (damping, h * a[:, None, :, None]),
-    ):
-        blocks = part.diagonal()[:, None, None] if single else part[None]
-        implicit -= by_stages * blocks[:, None, :, None, :]
-    size = a.shape[0] * coupled
-    square = implicit.reshape(h.size, m // coupled, size, size)
-    return np.asarray(np.linalg.inv(square + np.eye(size)).reshape(implicit.shape), dtype=np.float64)
+    eigenvalues, to_stages = _stages_apart(a)
+    z: ComplexArray = np.multiply.outer(eigenvalues, h)[..., None]
+    change: ComplexArray
+    # The inverse less one, 1 / (1 - moved) - 1: exactly 0 where nothing acts on a coordinate, as on the
+    # common rotation.
+    if single:
+        moved = z**2 * stiffness.diagonal() + z * damping.diagonal()
+        change = moved / (1.0 - moved)
+    else:
+        moved = z[..., None] ** 2 * stiffness + z[..., None] * damping
+        change = np.linalg.solve(np.eye(m) - moved, moved).astype(np.complex128)
+    groups, coupled = (m, 1) if single else (1, m)
+    # By einsum: the rounding of @ depends on how many lengths are computed together.
+    inverse = np.einsum("pn,nx->px", to_stages, change.reshape(eigenvalues.size, -1)).real
+    inverse = inverse.reshape(s, s, h.size, groups, coupled, coupled).transpose(2, 3, 0, 4, 1, 5)
+    unit = np.eye(s * coupled).reshape(s, coupled, s, coupled)
+    return np.asarray(inverse + unit, dtype=np.float64, order="C")
+
+
+def _stages_apart(a: FloatArray) -> tuple[ComplexArray, ComplexArray]:
+    """Eigenvalues of a (s, s) with positive or no imaginary part, (n,), and a matrix (s s, n).
+
+    f(a), row by row, is the real part of the matrix times f(eigenvalues), where f is real on the real axis.
+    A pair of conjugate eigenvalues has one column.
+    """
+    eigenvalues, vectors = np.linalg.eig(a)
+    of_stages = vectors[:, None, :] * np.linalg.inv(vectors).T
+    pairs = np.where(eigenvalues.imag > 0.0, 2.0, 1.0)
+    upper = eigenvalues.imag >= 0.0
+    return eigenvalues[upper], (pairs * of_stages).reshape(a.size, -1)[:, upper]
 
 
 @dataclass(frozen=True, eq=False)

@@ -20,6 +20,8 @@ from lumped.errors import FieldProblem, shown
 Columns = tuple[tuple[str, tuple[float | str, ...]], ...]
 #: Columns that start with this word have no field: errors of results by the model, as shares.
 ERROR = "error."
+#: Start of the source of a value that records know; their names follow.
+FROM_RECORD = "from record "
 #: Least and largest number of machines.
 LEAST_MACHINES = 8
 MOST_MACHINES = 1024

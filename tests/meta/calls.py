@@ -12,6 +12,7 @@ import inspect
 from collections.abc import Mapping
 
 import numpy as np
+import pytest
 import xarray as xr
 
 import floquet
@@ -20,16 +21,24 @@ import validation
 from lumped.model.periodic_system import LTVSystem, without_shafts
 from tests.meta.test_public_names import FUNCTIONS
 from tests.validation.check.record.tooth_forces import tooth_force_record
+from tests.validation.reporting.written import without_variant
 from validation import exchange, studies
 from validation.calibrate import calibrate
 from validation.check import check
 from validation.check.curves import Channel, Curves
 from validation.check.reference import lumped_motion
 from validation.interactive.results import Sampling
+from validation.plots import style
+from validation.reporting import build
+from validation.reporting.effort import QUICK
 
 PUBLIC = {one.id: one.values[0] for one in FUNCTIONS}
 #: Words of an annotation by which a function gets a pair, or what holds one.
 _PAIRS = ("GearPair", "GearVariation", "AnyPair", "Study", "ResponseBranches")
+#: A quick report as small as it can be: no search for jumps, which ends at another place in each run.
+FEW = dataclasses.replace(
+    QUICK, sweep_speeds=9, chart_speeds=21, chart_dampings=5, orders_speeds=9, jump_seconds=0.001
+)
 SPEEDS = [2000.0, 2600.0]
 ENDS = (2000.0, 2100.0)
 
@@ -108,9 +117,19 @@ def _calibrated(pair, **held):
 
 
 def _page_one(pair, folder, **held):
-    """Numbers of page 1 of a quick report."""
-    written = validation.report(pair, folder / "report", quick=True, force=True, **held)
+    """Numbers of page 1 of a quick report of few samples, whose figures are drawn but not saved."""
+    with pytest.MonkeyPatch.context() as patch:
+        without_variant(patch)
+        patch.setattr(build, "QUICK", FEW)
+        patch.setattr(style, "save", lambda figure, path, **_: path.write_bytes(b"<svg/>"))
+        written = validation.report(pair, folder / "report", quick=True, force=True, **held)
     return [row.value for row in written.first.numbers]
+
+
+def _nearest(pair, folder=None, **held):
+    """Search near the operating speed: a search of the whole range takes seconds."""
+    rpm = pair.operating.pinion_speed * 30.0 / np.pi
+    return floquet.nearest_unstable_speed(pair, (0.8 * rpm, 1.2 * rpm), **held)
 
 
 def _page(pair, folder, **held):
@@ -162,7 +181,7 @@ COMPUTED = {
     "floquet.gear_block": _of("floquet.gear_block"),
     "floquet.gear_pair_multipliers": _of("floquet.gear_pair_multipliers"),
     "floquet.gear_pair_system": _of("floquet.gear_pair_system"),
-    "floquet.nearest_unstable_speed": _of("floquet.nearest_unstable_speed"),
+    "floquet.nearest_unstable_speed": _nearest,
     "floquet.predicted_lines": _of("floquet.predicted_lines", 2),
     "floquet.revolution_multipliers": _of("floquet.revolution_multipliers"),
     "floquet.stability_boundaries": _of("floquet.stability_boundaries", ENDS, nodes=20, orders=2),
@@ -192,7 +211,7 @@ REFUSED = {
         "multibody.speed_sweep", SPEEDS[:1], settle=0, cycles=1, samples_per_cycle=8
     ),
     "floquet.campbell": _of("floquet.campbell", SPEEDS),
-    "floquet.jump_map": _of("floquet.jump_map", {"speed_rpm": SPEEDS, "torque": [60.0]}, (1,)),
+    "floquet.jump_map": _of("floquet.jump_map", {"speed_rpm": [2000.0, 2010.0], "torque": [60.0]}, (1,)),
     "floquet.long_run": _of("floquet.long_run", settle_cycles=1, cycles=64),
     "floquet.periodic_orbit": _of("floquet.periodic_orbit"),
     "floquet.response_branches": _of("floquet.response_branches", ENDS, (1,), seeds=0),

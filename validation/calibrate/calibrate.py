@@ -25,6 +25,7 @@ from lumped.model.periodic_system import Supports, with_supports
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray, IntArray, ProgressRequest
+from validation.calibrate.data import Data
 from validation.calibrate.discrepancy import (
     LEVELS,
     discrepancy_covariance,
@@ -35,7 +36,7 @@ from validation.calibrate.discrepancy import (
 from validation.calibrate.fit import STARTS, Fit, Minimum, starts
 from validation.calibrate.forms import Form, forms_of, machine, numeric_inputs, pair_of
 from validation.calibrate.machines import Machines
-from validation.calibrate.measured import Measured, measured_records
+from validation.calibrate.measured import measured_records
 from validation.calibrate.mixture import Component, by_levels, component, draws, mixture, pareto_shape
 from validation.calibrate.posterior import RELIABLE, Posterior
 from validation.prediction.motion import predicted
@@ -81,7 +82,7 @@ def calibrate(
     ----------
     pair : the gear pair; speed and torque of each record replace those of the pair
     records : one record or a sequence of records: paths of descriptions (TOML) or of data files, mappings,
-        data frames, ``Curves``, as ``check`` takes them, over time or mesh cycles
+        data frames, ``Curves``, as ``check`` takes them, over time or mesh cycles, or values over speed
     discrepancy : whether the model may be off in each order of each channel, by a share with a half-normal
         prior of 5 %. Without it the model counts as exact, and the ranges are too narrow
     machines : number of possible machines, 16 to 1023
@@ -158,11 +159,30 @@ class _Steps:
             self._tell(min(self._done / self._all, 0.99))
 
 
+class _Search:
+    """Minima of a fit. Of long sweeps the search begins with a few speeds: most of its way costs less."""
+
+    def __init__(self, fit: Fit) -> None:
+        self.fit = fit
+        self._few = fit.with_few_speeds()
+        self._seen: list[Minimum] = []
+
+    def minimum(self, start: FloatArray) -> Minimum | None:
+        """Return the minimum that a start leads to; None: no motion, or with few speeds one seen before."""
+        if self._few is None:
+            return self.fit.minimum(start)
+        one = self._few.minimum(start)
+        if one is None or not self._few.different(self._seen, one):
+            return None
+        self._seen.append(one)
+        return self.fit.minimum(one.z)
+
+
 def _minima(
     pair: GearPair,
     forms: Sequence[Form],
     inputs: Sequence[Input],
-    data: Sequence[Measured],
+    data: Sequence[Data],
     factor: FloatArray,
     steps: _Steps,
 ) -> dict[Form, list[Minimum]]:
@@ -172,12 +192,13 @@ def _minima(
         by_mesh.setdefault(form.mesh, []).append(form)
     points = starts(len(inputs))
     fits = {mesh: Fit(pair_of(pair, one[0]), inputs, data, factor, steps) for mesh, one in by_mesh.items()}
-    found = {mesh: _added([], fit, fit.minimum(points[0])) for mesh, fit in fits.items()}
+    searches = {mesh: _Search(fit) for mesh, fit in fits.items()}
+    found = {mesh: _added([], fit, searches[mesh].minimum(points[0])) for mesh, fit in fits.items()}
     least = min((one.chi_squared for minima in found.values() for one in minima), default=np.inf)
     for mesh, fit in fits.items():
         if not found[mesh] or min(one.chi_squared for one in found[mesh]) <= least + _APART:
             for point in points[1:]:
-                _added(found[mesh], fit, fit.minimum(point))
+                _added(found[mesh], fit, searches[mesh].minimum(point))
     result: dict[Form, list[Minimum]] = {}
     for mesh, same_mesh in by_mesh.items():
         result[same_mesh[0]] = found[mesh]
@@ -195,7 +216,7 @@ def _refined(
     pair: GearPair,
     forms: Sequence[Form],
     inputs: Sequence[Input],
-    data: Sequence[Measured],
+    data: Sequence[Data],
     factors: dict[float, FloatArray],
     levels: dict[float, float],
     steps: _Steps,
@@ -214,10 +235,14 @@ def _refined(
     # The slopes of the old minima are not those of these levels: new minima take their place.
     result = [old for old in components if (old.form.mesh, old.level) not in places]
     refined: dict[tuple[tuple[tuple[str, str], ...], float], list[Minimum]] = {}
+    searches: dict[tuple[tuple[tuple[str, str], ...], float], _Search] = {}
     for one, start in _starts_at_levels(probable, components):
         mesh, level = one.form.mesh, one.level
-        fit = Fit(pair_of(pair, one.form), inputs, data, factors[level], steps)
-        minimum = fit.minimum(start)
+        if (mesh, level) not in searches:
+            fit = Fit(pair_of(pair, one.form), inputs, data, factors[level], steps)
+            searches[mesh, level] = _Search(fit)
+        fit = searches[mesh, level].fit
+        minimum = searches[mesh, level].minimum(start)
         same = refined.setdefault((mesh, level), [])
         if minimum is None or not fit.different(same, minimum):
             continue
@@ -281,18 +306,20 @@ def _of_law(fit: Fit, other: Minimum) -> Minimum | None:
 
 
 def _refuse_another_pair(
-    data: Sequence[Measured],
+    data: Sequence[Data],
     minima: Sequence[tuple[Form, Minimum]],
     factor: FloatArray,
     values: FloatArray,
 ) -> None:
     """Refuse records that no machine of the pair explains, even with the largest discrepancy of the model."""
     least = min(component(form, one, LEVELS[-1], 1.0, factor, values).chi_squared for form, one in minima)
-    rests = [values - one.motions.values for _, one in minima]
-    explained = max(max(1.0 - float(rest @ rest) / float(values @ values) for rest in rests), 0.0)
+    scales = np.concatenate([one.scales for one in data])
+    motion = values / scales
+    rests = [motion - one.motions.values / scales for _, one in minima]
+    explained = max(max(1.0 - float(rest @ rest) / float(motion @ motion) for rest in rests), 0.0)
     if chi2.sf(least, values.size) >= _IMPOSSIBLE and explained >= _EXPLAINED:
         return
-    names = ", ".join(one.name for one in data)
+    names = ", ".join(dict.fromkeys(one.name for one in data))
     raise refuse(
         "records",
         f"{names}: the best machine explains {100.0 * explained:.0f} % of the motion",
@@ -304,7 +331,7 @@ def _refuse_another_pair(
 def _machines(
     pair: GearPair,
     inputs: Sequence[Input],
-    data: Sequence[Measured],
+    data: Sequence[Data],
     components: Sequence[Component],
     factors: dict[float, FloatArray],
     count: int,

@@ -6,7 +6,8 @@ addition to every complex order. At the level s each part of order m has the var
     s^2 (A^2 + |V_m|^2)/2,    A the largest order of the channel.
 
 Half of the variance is common to all records of the same quantity, in the phase of each record: a model that
-is too soft is too soft at every speed. The other half is independent.
+is too soft is too soft at every speed. The other half is independent. A value over speed has no phase: its
+error is real, with the variance of one part. Of a peak to peak v, where A = v, this is s^2 v^2.
 
 Sources: Kennedy and O'Hagan, J. R. Statist. Soc. B 63 (2001) 425, section 4 (a model is calibrated together
 with its discrepancy); docs/how_to/calibrate.md.
@@ -21,8 +22,8 @@ from math import erf
 import numpy as np
 from scipy.linalg import block_diag
 
-from lumped.typing import FloatArray
-from validation.calibrate.measured import Measured
+from lumped.typing import FloatArray, IntArray
+from validation.calibrate.data import Data
 
 #: Levels of the discrepancy over which a posterior is summed; the prior of a level is half-normal.
 LEVELS = (0.0, 0.02, 0.05, 0.10, 0.20)
@@ -44,9 +45,9 @@ def prior_of_levels() -> FloatArray:
     return np.diff(below)
 
 
-def shown_results(records: Sequence[Measured]) -> frozenset[str]:
+def shown_results(records: Sequence[Data]) -> frozenset[str]:
     """Return the results of page 1 whose quantities are channels of the records."""
-    recorded = {channel.key[0] for one in records for channel in one.channels}
+    recorded = frozenset().union(*(one.quantities for one in records))
     return frozenset(name for name, needed in _SHOWN_BY.items() if needed <= recorded)
 
 
@@ -66,31 +67,23 @@ def variance_of_error(level: float, shown: bool) -> float:
     return float(level**2 * below + DEVIATION**2 * tail)
 
 
-def noise_covariance(records: Sequence[Measured]) -> FloatArray:
+def noise_covariance(records: Sequence[Data]) -> FloatArray:
     """Return the (n, n) covariance of all data by noise and numerics."""
-    return np.asarray(block_diag(*(channel.noise for one in records for channel in one.channels)))
+    return np.asarray(block_diag(*(one.noise for one in records)))
 
 
-def discrepancy_covariance(records: Sequence[Measured]) -> FloatArray:
+def discrepancy_covariance(records: Sequence[Data]) -> FloatArray:
     """Return the (n, n) covariance of all data by a discrepancy of the level 1."""
-    places: dict[tuple[str, str | None, float], list[tuple[int, int, complex]]] = defaultdict(list)
+    by_key: dict[tuple[str, ...], list[tuple[IntArray, FloatArray]]] = defaultdict(list)
     start = 0
-    for one in records:
-        for channel in one.channels:
-            values = channel.orders.values
-            count = values.size
-            for j, (order, value) in enumerate(zip(channel.orders.orders, values, strict=True)):
-                size = np.sqrt(0.5 * (channel.scale**2 + abs(value) ** 2))
-                turn = value / abs(value) if abs(value) > 0.0 else 1.0
-                places[(*channel.key, float(order))].append((start + j, start + j + count, size * turn))
-            start += 2 * count
+    for record in records:
+        for one in record.loadings:
+            by_key[one.key].append((start + np.array(one.places), one.factors))
+        start += record.values.size
     covariance = np.zeros((start, start))
-    for same in places.values():
-        for row, (real, imaginary, size) in enumerate(same):
-            for column, (other_real, other_imaginary, other) in enumerate(same):
+    for same in by_key.values():
+        for row, (rows, factors) in enumerate(same):
+            for column, (columns, others) in enumerate(same):
                 share = 1.0 if row == column else _COMMON
-                product = share * size * np.conj(other)
-                covariance[real, other_real] = covariance[imaginary, other_imaginary] = product.real
-                covariance[imaginary, other_real] = product.imag
-                covariance[real, other_imaginary] = -product.imag
+                covariance[np.ix_(rows, columns)] = share * factors @ others.T
     return covariance

@@ -15,15 +15,15 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from scipy.linalg import solve_triangular
+from scipy.linalg import block_diag, cholesky, solve_triangular
 from scipy.special import ndtri
 from scipy.stats import qmc
 
 from lumped.errors import LawRangeWarning, SpurcheckError
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
+from validation.calibrate.data import Data, few_speeds
 from validation.calibrate.forms import LIMIT, beside, level_score, machine
-from validation.calibrate.measured import Measured
 from validation.prediction.motion import predicted
 from validation.prediction.uncertain_input import Input
 
@@ -33,10 +33,10 @@ _SEED = 7
 #: Most steps of a start, and the gain in chi^2 that a further step must promise.
 _STEPS = 10
 _ENOUGH = 0.5
+#: Speeds of a sweep from which the search of minima starts.
+_FEW = 5
 #: Minima nearer to each other than this, in standard deviations of the posterior, are one.
 _SAME = 1.0
-#: Samples in a mesh cycle of a motion: 16 for each of the fitted orders.
-SAMPLES = 128
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +46,7 @@ class Motions:
     Attributes
     ----------
     values : (n,) data in the phase of each record
-    by_shift : (n, record) slopes by the shift of each record
+    by_shift : (n, shift) slopes by the shifts of the records
     """
 
     values: FloatArray
@@ -117,7 +117,7 @@ class Fit:
 
     pair: GearPair
     inputs: Sequence[Input]
-    records: Sequence[Measured]
+    records: Sequence[Data]
     factor: FloatArray
     tell: Callable[[], None] = lambda: None
     data: FloatArray = field(init=False)
@@ -126,26 +126,35 @@ class Fit:
         """Collect the data of all records."""
         self.data = np.concatenate([one.values for one in self.records])
 
+    def with_few_speeds(self) -> Fit | None:
+        """Return the fit to a few speeds of each long sweep, which costs less; None: no sweep is long."""
+        kept = few_speeds(self.records, _FEW)
+        if len(kept) == len(self.records):
+            return None
+        ends = np.cumsum([0, *(one.values.size for one in self.records)])
+        rows = np.concatenate([np.arange(ends[j], ends[j + 1]) for j in kept])
+        covariance = (self.factor @ self.factor.T)[np.ix_(rows, rows)]
+        few = [self.records[j] for j in kept]
+        return Fit(self.pair, self.inputs, few, cholesky(covariance, lower=True), self.tell)
+
     def motions(self, z: FloatArray) -> Motions | None:
         """Return the predicted data at normal scores (input,); None: no such machine, or no motion."""
         values = []
-        shifts = np.zeros((self.data.size, len(self.records)))
-        start = 0
+        shifts = []
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", LawRangeWarning)
                 one = machine(self.pair, self.inputs, z)
-                for number, record in enumerate(self.records):
+                for record in self.records:
                     at = at_record(one, self.pair, record)
-                    of_record, by_shift = record.predicted(predicted(at, SAMPLES))
+                    of_record, by_shift = record.predicted(predicted(at, record.samples))
                     values.append(of_record)
-                    shifts[start : start + by_shift.size, number] = by_shift
-                    start += by_shift.size
+                    shifts.append(by_shift)
         except SpurcheckError:
             return None
         finally:
             self.tell()
-        return Motions(np.concatenate(values), shifts)
+        return Motions(np.concatenate(values), np.asarray(block_diag(*shifts)))
 
     def slopes(self, z: FloatArray, motions: Motions) -> FloatArray:
         """Return (n, input) slopes by one-sided differences; an input without a motion beside has slope 0."""
@@ -217,7 +226,7 @@ class Fit:
         )
 
 
-def at_record(one: GearPair, pair: GearPair, record: Measured) -> GearPair:
+def at_record(one: GearPair, pair: GearPair, record: Data) -> GearPair:
     """Return a machine of a pair at the speed and torque of a record.
 
     A torque that is off by 2 % at the torque of the pair is off by 2 % at the torque of the record: it is the

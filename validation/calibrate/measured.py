@@ -1,21 +1,24 @@
-"""Records as data of a fit: complex mesh orders of each channel, with the noise of each order.
+"""Records as data of a fit: of curves complex mesh orders of each channel, with the noise of each order.
 
 Sources: docs/how_to/calibrate.md, "What is compared".
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
+from scipy.linalg import block_diag
 
 from lumped.errors import ParameterError, SpurcheckError, refuse
 from lumped.fields.units import to_stated
 from lumped.schema.pair import GearPair
 from lumped.typing import ComplexArray, FloatArray
+from validation.calibrate.data import LEFT_OVER, Data, Loading, Unexplained
+from validation.calibrate.values_at_speed import values_at_speeds
 from validation.check.curve_orders import (
     BIN,
     coarse_shift,
@@ -26,10 +29,12 @@ from validation.check.curve_orders import (
 from validation.check.curves import Channel, Curves, ValuesOverSpeed
 from validation.check.mesh_frequency import mesh_frequency, nominal_cycles
 from validation.check.reading.reader import read
-from validation.check.record.channel import UNKNOWN
+from validation.check.record.channel import UNKNOWN, noise_factor
 from validation.check.record.compare import check_record, mean_motion
+from validation.files.formatting import quantity as printed
 from validation.prediction.motion import Prediction, predicted
 from validation.signals.complex_orders import ComplexOrders, common_shift
+from validation.signals.fitted import Fitted
 
 #: Highest mesh order that is fitted. All orders that the samples resolve are computed, so that higher orders
 #: do not count as noise.
@@ -40,8 +45,13 @@ _RESOLVED = 40
 _FLOOR = 2e-3
 #: Least number of mesh cycles of a record.
 _CYCLES = 8
+#: Samples in a mesh cycle of a motion: 16 for each of the fitted orders.
+SAMPLES = 128
 #: Records of the same channels whose orders differ by less than this share are the same record.
 _SAME = 1e-9
+
+Argument = TypeVar("Argument")
+Result = TypeVar("Result")
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,7 +83,7 @@ class MeasuredChannel:
 
 @dataclass(frozen=True, eq=False)
 class Measured:
-    """A record as data of a fit.
+    """A record of curves as data of a fit.
 
     Attributes
     ----------
@@ -102,10 +112,62 @@ class Measured:
         """(n,) data: for each channel the real parts, then the imaginary parts."""
         return np.concatenate([parts_of(one.orders.values) for one in self.channels])
 
-    def predicted(self, prediction: Prediction) -> tuple[FloatArray, FloatArray]:
-        """Return the data that a prediction gives in the phase of the record, and their slope by the shift.
+    @property
+    def quantities(self) -> frozenset[str]:
+        """Quantities of the channels."""
+        return frozenset(one.key[0] for one in self.channels)
 
-        Both are (n,), as ``values``. The slope is the change for each mesh cycle.
+    @property
+    def noise(self) -> FloatArray:
+        """(n, n) covariance of the data by noise and numerics."""
+        return np.asarray(block_diag(*(one.noise for one in self.channels)))
+
+    @property
+    def scales(self) -> FloatArray:
+        """(n,) largest order of the channel of each number."""
+        return np.concatenate([np.full(2 * one.orders.orders.size, one.scale) for one in self.channels])
+
+    @property
+    def samples(self) -> int:
+        """Samples in a mesh cycle: 16 for each of the fitted orders."""
+        return SAMPLES
+
+    @property
+    def shifts(self) -> int:
+        """One: the shift in time."""
+        return 1
+
+    @property
+    def noise_shares(self) -> list[float]:
+        """Standard deviation of the noise of an order of each channel over its largest order."""
+        return [
+            float(np.sqrt(np.trace(one.orders.covariance) / (2.0 * one.orders.orders.size)) / one.scale)
+            for one in self.channels
+        ]
+
+    @property
+    def loadings(self) -> list[Loading]:
+        """An error of each complex order, in its phase; see ``validation.calibrate.discrepancy``."""
+        found = []
+        start = 0
+        for channel in self.channels:
+            count = channel.orders.orders.size
+            for j, (order, value) in enumerate(
+                zip(channel.orders.orders, channel.orders.values, strict=True)
+            ):
+                size = np.sqrt(0.5 * (channel.scale**2 + abs(value) ** 2))
+                turn = size * (value / abs(value) if abs(value) > 0.0 else 1.0)
+                factors = np.array([[turn.real, -turn.imag], [turn.imag, turn.real]])
+                quantity, tooth_pair = channel.key
+                key = (quantity, tooth_pair or "", f"order {order:g}")
+                found.append(Loading(key, (start + j, start + j + count), factors))
+            start += 2 * count
+        return found
+
+    def predicted(self, prediction: Prediction) -> tuple[FloatArray, FloatArray]:
+        """Return the data (n,) that a prediction gives in the phase of the record, and their slope.
+
+        The slope (n, 1) is the change by the shift, for each mesh cycle.
         """
         motion = mean_motion(prediction, self.recurrence)
         ours = [orders_of_motion(motion, one.channel, one.orders) for one in self.channels]
@@ -116,8 +178,42 @@ class Measured:
         slopes = [2j * np.pi * one.orders * values for one, values in zip(ours, shifted, strict=True)]
         return (
             np.concatenate([parts_of(values) for values in shifted]),
-            np.concatenate([parts_of(values) for values in slopes]),
+            np.concatenate([parts_of(values) for values in slopes])[:, None],
         )
+
+    def fitted(self, fitted: FloatArray) -> Fitted:
+        """Return the amplitudes of the first channel beside fitted data (n,)."""
+        channel = self.channels[0]
+        orders = channel.orders
+        size = orders.orders.size
+        noise = np.sqrt([float(np.trace(orders.block(j))) / 2.0 for j in range(size)])
+        ours = np.hypot(fitted[:size], fitted[size : 2 * size])
+        kind = channel.channel.kind
+        return Fitted(orders.orders, orders.amplitudes, noise, ours, kind.words, kind.unit, "mesh order")
+
+    def unexplained(self, fitted: FloatArray, count: int) -> Iterator[Unexplained]:
+        """Orders, out of ``count``, in which fitted data (n,) miss the record by more than its noise."""
+        start = 0
+        for channel in self.channels:
+            orders = channel.orders
+            size = orders.orders.size
+            ours = fitted[start : start + size] + 1j * fitted[start + size : start + 2 * size]
+            start += 2 * size
+            for j, measured in enumerate(orders.values):
+                rest = float(abs(ours[j] - measured))
+                noise = float(np.sqrt(np.trace(orders.block(j))))
+                if not rest > max(noise_factor(count) * noise, LEFT_OVER * channel.scale):
+                    continue
+                amplitudes = float(abs(measured)), float(abs(ours[j]))
+                sizes = [printed(one, channel.channel.kind.unit, 3) for one in amplitudes]
+                place = f"order {orders.orders[j]:g}"
+                words = (
+                    f"{self.name}, {channel.channel.name}: {place} is {sizes[0]}, with the best inputs "
+                    f"{sizes[1]}; {100.0 * rest / channel.scale:.0f} % of the largest order is left over."
+                )
+                yield Unexplained(
+                    self.name, channel.channel.name, place, *amplitudes, rest / channel.scale, words
+                )
 
 
 def parts_of(values: ComplexArray) -> FloatArray:
@@ -125,8 +221,8 @@ def parts_of(values: ComplexArray) -> FloatArray:
     return np.concatenate([values.real, values.imag])
 
 
-def measured_records(pair: GearPair, records: Sequence[Any]) -> tuple[Measured, ...]:
-    """Return records as data of a fit.
+def measured_records(pair: GearPair, records: Sequence[Any]) -> tuple[Data, ...]:
+    """Return records as data of a fit; values over speed are one record for each speed.
 
     Parameters
     ----------
@@ -138,38 +234,55 @@ def measured_records(pair: GearPair, records: Sequence[Any]) -> tuple[Measured, 
     ParameterError : a record that cannot be used: no curves, too few mesh cycles, another speed than stated,
         more noise than motion, the same record twice
     """
-    found: list[Measured] = []
-    for number, record in enumerate(records, 1):
-        name = str(record) if isinstance(record, (str, Path)) else f"record {number}"
-        try:
-            one = _measured(pair, record)
-        except ParameterError as error:
-            raise ParameterError(list(error.problems), error.source or name) from None
-        for other in found:
-            if _equal(one, other):
-                action = "Name each record once: twice the same values are no more knowledge."
-                raise refuse("records", f"{one.name} twice", "records that differ", action)
-        found.append(one)
-    names = [one.name for one in found]
-    return tuple(
-        one if names.count(one.name) == 1 else _renamed(one, number) for number, one in enumerate(found, 1)
-    )
+    sources = [
+        str(one) if isinstance(one, (str, Path)) else f"record {number}"
+        for number, one in enumerate(records, 1)
+    ]
+    named = [_in_source(source, _read, pair, one) for source, one in zip(sources, records, strict=True)]
+    names = [one.name for one in named]
+    found: list[Data] = []
+    for number, (source, record) in enumerate(zip(sources, named, strict=True), 1):
+        name = record.name
+        if names.count(name) > 1:
+            record = replace(record, name=f"{name}, record {number}")
+        parts = _in_source(source, _data, pair, record)
+        if any(_equal(one, other) for one in parts for other in found):
+            action = "Name each record once: twice the same values are no more knowledge."
+            raise refuse("records", f"{name} twice", "records that differ", action)
+        found += parts
+    return tuple(found)
 
 
-def _renamed(one: Measured, number: int) -> Measured:
-    return Measured(f"{one.name}, record {number}", one.pair, one.channels, one.recurrence, one.near)
+def _in_source(
+    source: str, run: Callable[[GearPair, Argument], Result], pair: GearPair, record: Argument
+) -> Result:
+    """Run a function of pair and record; a refusal names the source of the record."""
+    try:
+        return run(pair, record)
+    except ParameterError as error:
+        raise ParameterError(list(error.problems), error.source or source) from None
 
 
-def _equal(one: Measured, other: Measured) -> bool:
+def _data(pair: GearPair, record: Curves | ValuesOverSpeed) -> list[Data]:
+    """A record as data: one part for each speed of a sweep."""
+    if isinstance(record, ValuesOverSpeed):
+        return list(values_at_speeds(pair, record))
+    return [_measured(pair, record)]
+
+
+def _equal(one: Data, other: Data) -> bool:
+    """Whether two records are the same numbers at the same speed."""
     a, b = one.values, other.values
-    return a.shape == b.shape and bool(np.linalg.norm(a - b) <= _SAME * np.linalg.norm(a))
+    if a.shape != b.shape or one.pair.operating != other.pair.operating:
+        return False
+    return bool(np.linalg.norm(a - b) <= _SAME * np.linalg.norm(a))
 
 
-def _measured(pair: GearPair, record: Any) -> Measured:
-    curves = record if isinstance(record, (Curves, ValuesOverSpeed)) else read(record, pair)
-    if isinstance(curves, ValuesOverSpeed):
-        action = "Give curves over time, one record for each speed."
-        raise refuse("record", "values over speed", "curves over time or mesh cycles", action)
+def _read(pair: GearPair, record: Any) -> Curves | ValuesOverSpeed:
+    return record if isinstance(record, (Curves, ValuesOverSpeed)) else read(record, pair)
+
+
+def _measured(pair: GearPair, curves: Curves) -> Measured:
     if not curves.channels:
         raise refuse("record", "no channel", "at least one curve", "Name the columns of the curves.")
     at = curves.at(pair).healthy

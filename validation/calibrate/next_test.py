@@ -1,17 +1,17 @@
 """Which test pays next: candidates ranked by the width that they would leave of the results of page 1.
 
-A candidate is a run at one speed and torque. Some of the machines that the records
-leave take the place of the truth in turn. The records and the candidate are calibrated as if they were the
-motion of this machine, with the slopes at the machine in the place of a search. The variance that is left
-has all levels of the discrepancy and the forms that are not told apart. Its logarithm is averaged over the
-truths.
+A candidate is a run at one speed and torque, or a sweep: runs at several speeds. Some of the machines that
+the records leave take the place of the truth in turn. The records and the candidate are calibrated as if they
+were the motion of this machine, with the slopes at the machine in the place of a search. The variance that is
+left has all levels of the discrepancy and the forms that are not told apart. Its logarithm is averaged over
+the truths.
 
 Source: Chaloner and Verdinelli, Statist. Sci. 10 (1995) 273, section 2: the expected loss of an experiment.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol
 
@@ -22,16 +22,17 @@ from lumped.errors import SpurcheckError
 from lumped.fields.units import to_stated
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
+from validation.calibrate.data import Data
 from validation.calibrate.discrepancy import (
     discrepancy_covariance,
     noise_covariance,
     shown_results,
     variance_of_error,
 )
-from validation.calibrate.fit import SAMPLES, Fit, Minimum, Motions, at_record
+from validation.calibrate.fit import Fit, Minimum, Motions, at_record
 from validation.calibrate.forms import Form, beside, level_score, machine, pair_of
 from validation.calibrate.machines import Machines
-from validation.calibrate.measured import ORDERS, Measured, MeasuredChannel
+from validation.calibrate.measured import ORDERS, SAMPLES, Measured, MeasuredChannel
 from validation.calibrate.mixture import Component, by_levels, component, mixture
 from validation.check.curves import Channel
 from validation.check.record.compare import mean_motion
@@ -61,7 +62,7 @@ class Calibrated(Protocol):
         """The varied inputs."""
 
     @property
-    def records(self) -> tuple[Measured, ...]:
+    def records(self) -> tuple[Data, ...]:
         """The records."""
 
     @property
@@ -83,12 +84,13 @@ class Candidate:
 
     Attributes
     ----------
-    speed_rpm, torque : operating point [rpm], [N m]
+    speeds_rpm : pinion speeds of its runs [rpm]; one, or those of a sweep
+    torque : pinion torque [N m]
     channels : quantities that are recorded
     left : result -> standard deviation after the test over that before, 0 to 1
     """
 
-    speed_rpm: float
+    speeds_rpm: tuple[float, ...]
     torque: float
     channels: tuple[str, ...]
     left: dict[str, float]
@@ -108,9 +110,9 @@ class Candidate:
         }
         forces = " and both forces on the pinion bearing" if len(self.channels) > 1 else ""
         left = ", ".join(f"{results[name]} {100.0 * share:.0f} %" for name, share in self.left.items())
-        return (
-            f"transmission error{forces} at {self.speed_rpm:.4g} rpm and {self.torque:.3g} N m leaves: {left}"
-        )
+        *first, last = (f"{speed:.4g}" for speed in self.speeds_rpm)
+        speeds = f"{', '.join(first)} and {last}" if first else last
+        return f"transmission error{forces} at {speeds} rpm and {self.torque:.3g} N m leaves: {left}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,6 +133,29 @@ class _Truth:
     slopes: FloatArray
 
 
+@dataclass(frozen=True, eq=False)
+class _Run:
+    """A run that is not there yet.
+
+    Attributes
+    ----------
+    speed : pinion speed [rad/s]
+    record : motion of the best machine, with the noise of the records
+    minima : data at each truth, and their slopes
+    """
+
+    speed: float
+    record: Measured
+    minima: tuple[Minimum, ...]
+
+    def only(self, channels: int) -> _Run:
+        """Return the run with its first channels alone."""
+        record = replace(self.record, channels=self.record.channels[:channels])
+        return replace(
+            self, record=record, minima=tuple(_rows(one, record.values.size) for one in self.minima)
+        )
+
+
 def next_tests(posterior: Calibrated) -> tuple[Candidate, ...]:
     """Return the candidates, the test that leaves least first.
 
@@ -140,22 +165,44 @@ def next_tests(posterior: Calibrated) -> tuple[Candidate, ...]:
 
     Returns
     -------
-    candidates : speeds of half to twice the speed of the pair within its range, full and half torque, the
-        transmission error alone or with both forces on the pinion bearing; noise as in the records. The share
-        that a test leaves is an expected standard deviation over that of page 1, with the discrepancy of the
-        model
+    candidates : speeds of half to twice the speed of the pair within its range, each alone and all as a
+        sweep, full and half torque, the transmission error alone or with both forces on the pinion bearing;
+        noise as in the records. The share that a test leaves is an expected standard deviation over that of
+        page 1, with the discrepancy of the model
     """
     truths = _truths(posterior)
+    before = page_one_deviations(posterior)
     operating = posterior.prior.operating
     low, high = operating.speed_range or (0.0, np.inf)
+    speeds = [factor * operating.pinion_speed for factor in _SPEEDS]
     found: list[Candidate] = []
-    for factor in _SPEEDS:
-        speed = factor * operating.pinion_speed
-        if not low <= speed <= high:
-            continue
-        for share in _TORQUES:
-            found += _at(posterior, truths, speed, share * operating.pinion_torque)
+    for share in _TORQUES:
+        torque = share * operating.pinion_torque
+        runs = [_run(posterior, truths, speed, torque) for speed in speeds if low <= speed <= high]
+        computed = [one for one in runs if one is not None]
+        tests = [[one] for one in computed] + ([computed] if len(computed) > 1 else [])
+        for test in tests:
+            for channels in _CHANNELS:
+                parts = [one.only(len(channels)) for one in test]
+                minima = [_joined(truth.by_records, parts, j) for j, truth in enumerate(truths)]
+                records = [*posterior.records, *(one.record for one in parts)]
+                after = _deviations_after(posterior, truths, minima, records)
+                left = np.minimum(after / np.maximum(before, 1e-300), 1.0)
+                found.append(
+                    Candidate(
+                        tuple(float(to_stated(one.speed, "rpm")) for one in test), float(torque), channels,
+                        dict(zip(RESULTS, map(float, left), strict=True)),
+                    )
+                )  # fmt: skip
     return tuple(sorted(found, key=lambda one: one.score))
+
+
+def recommendation(candidates: Sequence[Candidate]) -> tuple[str, ...]:
+    """Return sentences: the run that leaves least, and the sweep that leaves least."""
+    runs = [one for one in candidates if len(one.speeds_rpm) == 1]
+    sweeps = [one for one in candidates if len(one.speeds_rpm) > 1]
+    found = [f"Next test: {one.words}." for one in runs[:1]]
+    return (*found, *(f"Or a sweep: {one.words}." for one in sweeps[:1]))
 
 
 def _truths(posterior: Calibrated) -> list[_Truth]:
@@ -194,32 +241,27 @@ def _about(fit: Fit, z: FloatArray) -> Minimum | None:
     return None if motions is None else Minimum(z, motions, fit.slopes(z, motions), np.nan)
 
 
-def _at(posterior: Calibrated, truths: Sequence[_Truth], speed: float, torque: float) -> Iterator[Candidate]:
-    """Candidates of one operating point; none where a machine has no motion there."""
+def _run(posterior: Calibrated, truths: Sequence[_Truth], speed: float, torque: float) -> _Run | None:
+    """Return the run of one operating point; None where a machine has no motion there."""
     record = _record(posterior, speed, torque)
     if record is None:
-        return
+        return None
     minima = []
     for truth in truths:
         pair = pair_of(posterior.prior, truth.form)
         new = _about(Fit(pair, posterior.inputs, [record], np.eye(0)), truth.z)
         if new is None:
-            return
-        minima.append(_joined(truth.by_records, new))
-    before = page_one_deviations(posterior)
-    for channels in _CHANNELS:
-        part = replace(record, channels=record.channels[: len(channels)])
-        after = _deviations_after(posterior, truths, minima, [*posterior.records, part])
-        share = np.minimum(after / np.maximum(before, 1e-300), 1.0)
-        left = dict(zip(RESULTS, map(float, share), strict=True))
-        yield Candidate(float(to_stated(speed, "rpm")), float(torque), channels, left)
+            return None
+        minima.append(new)
+    return _Run(speed, record, tuple(minima))
 
 
-def _joined(old: Minimum, new: Minimum) -> Minimum:
-    """Data of the records, then of the candidate; each has shifts of its own."""
-    shifts = np.asarray(block_diag(old.motions.by_shift, new.motions.by_shift))
-    values = np.concatenate([old.motions.values, new.motions.values])
-    return Minimum(old.z, Motions(values, shifts), np.vstack([old.slopes, new.slopes]), np.nan)
+def _joined(old: Minimum, runs: Sequence[_Run], truth: int) -> Minimum:
+    """Data of the records, then of the runs, at a truth; each run has a shift of its own."""
+    parts = [old, *(one.minima[truth] for one in runs)]
+    shifts = np.asarray(block_diag(*(one.motions.by_shift for one in parts)))
+    values = np.concatenate([one.motions.values for one in parts])
+    return Minimum(old.z, Motions(values, shifts), np.vstack([one.slopes for one in parts]), np.nan)
 
 
 def page_one_deviations(posterior: Calibrated) -> FloatArray:
@@ -243,9 +285,9 @@ def _levels(posterior: Calibrated) -> dict[float, float]:
 
 
 def _deviations_after(
-    posterior: Calibrated, truths: Sequence[_Truth], minima: Sequence[Minimum], records: Sequence[Measured]
+    posterior: Calibrated, truths: Sequence[_Truth], minima: Sequence[Minimum], records: Sequence[Data]
 ) -> FloatArray:
-    """(result,) expected standard deviation of the results with the candidate as the last record.
+    """(result,) expected standard deviation of the results with the runs of a candidate as the last records.
 
     The geometric mean over the truths: near a resonance one machine may leave ten times as much as another.
     """
@@ -253,17 +295,16 @@ def _deviations_after(
     noise, of_model = noise_covariance(records), discrepancy_covariance(records)
     size = noise.shape[0]
     factors = {level: cholesky(noise + level**2 * of_model, lower=True) for level in levels}
-    known = [_rows(one, size) for one in minima]
     shown = shown_results(records)
     variances = []
-    for truth, place in zip(truths, known, strict=True):
+    for truth, place in zip(truths, minima, strict=True):
         data = place.motions.values
         found = [
             one
             for level, prior in levels.items()
-            for one in _explanations(truth, truths, known, level, prior, factors[level], data)
+            for one in _explanations(truth, truths, minima, level, prior, factors[level], data)
         ]
-        variances.append(_variance(mixture(by_levels(found, levels, size)), truths, known, posterior, shown))
+        variances.append(_variance(mixture(by_levels(found, levels, size)), truths, minima, posterior, shown))
     return np.asarray(np.exp(0.5 * np.mean(np.log(np.maximum(variances, 1e-300)), axis=0)))
 
 
@@ -326,12 +367,7 @@ def _record(posterior: Calibrated, speed: float, torque: float) -> Measured | No
 
     None: no motion. It has all channels of the candidates.
     """
-    shares = [
-        np.sqrt(float(np.trace(one.orders.covariance)) / (2.0 * one.orders.orders.size)) / one.scale
-        for record in posterior.records
-        for one in record.channels
-    ]
-    noise = float(np.median(shares))
+    noise = float(np.median([share for record in posterior.records for share in record.noise_shares]))
     operating = {
         "operating.pinion_speed": f"{float(speed)!r} rad/s",
         "operating.pinion_torque": f"{float(torque)!r} N*m",

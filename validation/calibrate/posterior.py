@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 import xarray as xr
@@ -18,13 +18,11 @@ from lumped.display.result import DisplayedResult, no_variables
 from lumped.labelling import labelled_dataset, provenance
 from lumped.model.periodic_system import supports_of
 from lumped.schema.pair import GearPair, field_values, validated
-from lumped.schema.posterior import ERROR
+from lumped.schema.posterior import ERROR, FROM_RECORD
+from validation.calibrate.data import Data, Unexplained, first_channel, names_of, words_of
 from validation.calibrate.forms import pair_of
 from validation.calibrate.machines import Machines
-from validation.calibrate.measured import Measured
 from validation.calibrate.mixture import Component, moments
-from validation.check.record.channel import noise_factor
-from validation.files.formatting import quantity as printed
 from validation.prediction.machines import with_errors
 from validation.prediction.motion import QUANTITIES
 from validation.prediction.uncertain_input import Input
@@ -39,35 +37,12 @@ if TYPE_CHECKING:
 UNKNOWN = 0.9
 #: A form is known from this probability on.
 KNOWN_FORM = 0.95
-#: An order is unexplained where more than this share of the largest order of its channel is left over.
-_LEFT_OVER = 0.05
 #: Shape of the tail of the weights from which the weights are not used.
 RELIABLE = 0.7
 #: A list of a TOML file on several lines.
 _LIST = re.compile(r"\[\n((?:    [^\n]*,\n)+)\]")
 #: Digits of the values in a file.
 _DIGITS = 7
-
-
-class Unexplained(NamedTuple):
-    """A mesh order that no value of the inputs explains.
-
-    Attributes
-    ----------
-    record, channel : their names
-    order : mesh order
-    measured, fitted : amplitudes, in the unit of the channel
-    rest : amplitude of the complex difference over the largest order of the channel
-    words : sentence
-    """
-
-    record: str
-    channel: str
-    order: float
-    measured: float
-    fitted: float
-    rest: float
-    words: str
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -93,7 +68,7 @@ class Posterior(DisplayedResult):
 
     prior: GearPair
     inputs: tuple[Input, ...]
-    records: tuple[Measured, ...]
+    records: tuple[Data, ...]
     components: tuple[Component, ...]
     machines: Machines
     discrepancy: bool
@@ -141,34 +116,15 @@ class Posterior(DisplayedResult):
 
     @cached_property
     def unexplained(self) -> tuple[Unexplained, ...]:
-        """Orders in which the best fit misses the records by more than their noise, largest rest first."""
+        """Orders and values that the best fit misses by more than their noise, largest rest first."""
         best = self.components[0].minimum.motions.values
-        orders = sum(channel.orders.orders.size for one in self.records for channel in one.channels)
-        rows = []
+        count = sum(one.values.size // (1 + one.shifts) for one in self.records)  # curves: two parts an order
+        rows: list[Unexplained] = []
         start = 0
         for record in self.records:
-            for channel in record.channels:
-                count = channel.orders.orders.size
-                ours = best[start : start + count] + 1j * best[start + count : start + 2 * count]
-                start += 2 * count
-                for j, measured in enumerate(channel.orders.values):
-                    rest = float(abs(ours[j] - measured))
-                    noise = float(np.sqrt(np.trace(channel.orders.block(j))))
-                    if rest > max(noise_factor(orders) * noise, _LEFT_OVER * channel.scale):
-                        order = float(channel.orders.orders[j])
-                        unit = channel.channel.kind.unit
-                        sizes = [printed(float(abs(one)), unit, 3) for one in (measured, ours[j])]
-                        words = (
-                            f"{record.name}, {channel.channel.name}: order {order:g} is {sizes[0]}, with the "
-                            f"best inputs {sizes[1]}; {100.0 * rest / channel.scale:.0f} % of the largest "
-                            "order is left over."
-                        )
-                        rows.append(
-                            Unexplained(
-                                record.name, channel.channel.name, order, float(abs(measured)),
-                                float(abs(ours[j])), rest / channel.scale, words,
-                            )
-                        )  # fmt: skip
+            size = record.values.size
+            rows += record.unexplained(best[start : start + size], count)
+            start += size
         return tuple(sorted(rows, key=lambda one: -one.rest))
 
     @cached_property
@@ -201,7 +157,7 @@ class Posterior(DisplayedResult):
                 "input": (names, "1", "uncertain input"),
                 "percentile": (list(PERCENTILES), "%", "share of the machines below"),
             },
-            self._provenance | {"records": [one.words for one in self.records], "level": self.level},
+            self._provenance | {"records": words_of(self.records), "level": self.level},
         )
 
     @cached_property
@@ -244,12 +200,12 @@ class Posterior(DisplayedResult):
             {path: values[0] for path, values in columns.items()}
         )
         data = fitted.to_mapping()
-        names = ", ".join(one.words for one in self.records)
+        names = names_of(self.records)
         assumed = data.setdefault("assumed", {})
         sources = data.setdefault("sources", {})
         for path in columns:
             if self._knows(path):
-                sources[path] = f"from record {names}"
+                sources[path] = FROM_RECORD + names
                 assumed.pop(path, None)
             else:
                 sources.pop(path, None)
@@ -301,7 +257,7 @@ class Posterior(DisplayedResult):
     @property
     def sentences(self) -> tuple[str, ...]:
         """What the records say, what they do not say, what nothing explains, and how far to trust it."""
-        names = ", ".join(one.words for one in self.records)
+        names = names_of(self.records)
         total = len(self.inputs)
         lines = [f"The records know {len(self.identified)} of {total} uncertain inputs: {names}."]
         if self.not_identified:
@@ -321,29 +277,34 @@ class Posterior(DisplayedResult):
             )
         return tuple(lines)
 
-    def text(self) -> str:
-        """Return the fitted pair as the text of a parameter file, with what the records say as comments."""
+    @property
+    def recommendation(self) -> tuple[str, ...]:
+        """Which run, and which sweep, would leave least of page 1: sentences out of ``next_tests``."""
+        from validation.calibrate.next_test import recommendation
+
+        return recommendation(self.next_tests)
+
+    def text(self, *, next_test: bool = False) -> str:
+        """Return the fitted pair as the text of a parameter file, with what the records say as comments.
+
+        ``next_test``: whether the comments say which test would pay next.
+        """
         from validation.exchange import parameter_text
 
-        text = parameter_text(self.pair.to_mapping(), self.sentences)
+        comments = (*self.sentences, *(self.recommendation if next_test else ()))
+        text = parameter_text(self.pair.to_mapping(), comments)
         head, mark, table = text.partition("[posterior]")
         return (
             head + mark + _LIST.sub(lambda found: "[" + " ".join(found[1].split()).rstrip(",") + "]", table)
         )
 
     def plot(self, *variables: object) -> Figure:
-        """Return the figure: the width of each input after the records, and the orders of a channel."""
+        """Return the figure: the width of each input after the records, and a channel beside its fit."""
         no_variables(variables)
         from validation.plots.calibrate import calibration_figure
 
-        channel = self.records[0].channels[0]
-        count = channel.orders.orders.size
-        parts = self.components[0].minimum.motions.values[: 2 * count]
-        fitted = parts[:count] + 1j * parts[count:]
-        quantity = channel.channel.kind
-        return calibration_figure(
-            self.shares, self.identified, channel.orders, fitted, (quantity.words, quantity.unit)
-        )
+        channel = first_channel(self.records, self.components[0].minimum.motions.values)
+        return calibration_figure(self.shares, self.identified, channel)
 
 
 def _rounded(value: float) -> float:

@@ -154,6 +154,7 @@ class SpeedColumn:
     statistic : "peak_to_peak", "rms" (about the mean), "mean" or "order"
     values : (s,) in the SI unit of the quantity; amplitudes of an order are peak values
     order : mesh order, for the statistic "order"
+    noise : standard deviation of a value in SI; None: not known
     """
 
     name: str
@@ -161,6 +162,7 @@ class SpeedColumn:
     statistic: Literal["peak_to_peak", "rms", "mean", "order"]
     values: FloatArray
     order: float = 0.0
+    noise: float | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -79,15 +80,16 @@ def calibrate(
             pair, records, discrepancy, machines=machines, seed=seed, supports=supports, progress=tell
         )
     if as_json:
-        print_json(_as_json(posterior))
+        print_json(_as_json(posterior, next_test))
     else:
         _show(posterior)
         if next_test:
-            stdout().print(f"next test: {posterior.next_tests[0].words}" if posterior.next_tests else "")
+            for line in posterior.recommendation:
+                stdout().print(line)
     if output is None:
         note("Not written: -o fitted.toml writes the fitted pair.")
     elif output.suffix.lower() == ".toml":
-        write_text(output, posterior.text(), new=not force)
+        write_text(output, posterior.text(next_test=next_test), new=not force)
         stdout().print(f"fitted pair: {output}")
     else:
         from validation.plots.style import save
@@ -131,11 +133,13 @@ def _show(posterior: Posterior) -> None:
     show("", "at the operating point | unit | >5 % | >50 % | >95 %", results)
 
 
-def _as_json(posterior: Posterior) -> dict[str, Any]:
-    """Return the numbers as JSON data."""
+def _as_json(posterior: Posterior, next_test: bool) -> dict[str, Any]:
+    """Return the numbers as JSON data, with the candidates of the next test where they are asked for."""
+    from validation.calibrate.data import words_of
+
     table = posterior.table
     return {
-        "records": [one.words for one in posterior.records],
+        "records": words_of(posterior.records),
         "identified": posterior.identified,
         "not_identified": list(posterior.not_identified),
         "forms": posterior.forms,
@@ -155,4 +159,5 @@ def _as_json(posterior: Posterior) -> dict[str, Any]:
             name: posterior.results[f"{name}_percentile"].to_numpy().tolist()
             for name in ("dte_peak_to_peak", "dynamic_factor", "tooth_load", "least_force", "bearing_rms")
         },
+        "next_tests": [asdict(one) for one in posterior.next_tests] if next_test else [],
     }

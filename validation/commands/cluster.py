@@ -12,6 +12,14 @@ if TYPE_CHECKING:
     from validation.studies.cluster import Cluster
 
 
+def refuse_no_address(address: str | None) -> None:
+    """Refuse a value of --cluster that is no address, before the parameter file is read."""
+    if address is not None:
+        from validation.studies.cluster import workers_on_this_machine
+
+        workers_on_this_machine(address)
+
+
 @contextmanager
 def cluster_of(address: str | None, wait_seconds: float | None) -> Iterator[Cluster | None]:
     """Open the cluster of --cluster. None: the option is not there, and this machine computes.

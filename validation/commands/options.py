@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple
 
 import typer
 
-from validation.commands.terminal import Group, note, stderr
+from validation.commands.cluster import refuse_no_address
+from validation.commands.terminal import Early, Group, note, stderr
 
 if TYPE_CHECKING:
     import numpy as np
@@ -100,6 +101,7 @@ Cluster = Annotated[
         "cluster of 8 workers on this machine.",
         show_default=False,
     ),
+    Early(refuse_no_address),
 ]
 WaitSeconds = Annotated[
     float | None,

@@ -130,6 +130,17 @@ class Group(NamedTuple):
     make: Callable[..., Any]
 
 
+class Early(NamedTuple):
+    """Mark of a parameter whose value is checked before any file is read.
+
+    Attributes
+    ----------
+    check : function of the value; it raises ParameterError
+    """
+
+    check: Callable[[Any], None]
+
+
 def _by_options(action: str, options: Mapping[str, str]) -> str:
     """Rewrite each function argument NAME="VALUE" in an advice as the option that sets this argument."""
 
@@ -153,6 +164,7 @@ def guarded(command: Callable[..., None]) -> Callable[..., None]:
     }
     annotated: Any = Annotated
     groups: dict[str, Group] = {}
+    checks: list[tuple[str, Callable[[Any], None]]] = []
     #: Argument of a function of the packages -> option that sets this argument.
     options = {
         "samples_per_cycle": "--samples",
@@ -175,7 +187,9 @@ def guarded(command: Callable[..., None]) -> Callable[..., None]:
                 options[one.name] = f"--{one.name.strip('_').replace('_', '-')}"
                 info = typer.Option(options[one.name], metavar=metavar, help=words)
             kind = annotated[kind, info]
-        group = next((m for m in getattr(kind, "__metadata__", ()) if isinstance(m, Group)), None)
+        marks = getattr(kind, "__metadata__", ())
+        checks += [(one.name, mark.check) for mark in marks if isinstance(mark, Early)]
+        group = next((mark for mark in marks if isinstance(mark, Group)), None)
         if group is not None:
             groups[one.name] = group
             shown += [keyword(name, default=None, annotation=kind) for name, kind in group.options.items()]
@@ -202,6 +216,8 @@ def guarded(command: Callable[..., None]) -> Callable[..., None]:
             with warnings.catch_warnings(), without_bars():  # a command draws its bar itself
                 warnings.simplefilter("always", LawRangeWarning)
                 warnings.showwarning = show
+                for name, check in checks:
+                    check(kwargs[name])
                 made = {
                     name: group.make(**{option: kwargs.pop(option) for option in group.options})
                     for name, group in groups.items()

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import xarray as xr
 
 from lumped.outcomes import Absent
+from lumped.schema.posterior import FROM_RECORD
 from validation.files.formatting import quantity
 from validation.reporting.actions import Action, actions_of
 from validation.reporting.facts import RANGES, Fact, facts_of, rpm, samples_matter
@@ -17,6 +18,8 @@ from validation.reporting.results import Results
 from validation.reporting.verdict import Verdict, verdict_of
 
 _NOT_MODELLED = "Not modelled: helix; misalignment; housing and sound radiation."
+#: Records that a sentence names.
+_NAMED_RECORDS = 3
 #: Sentence before ``_NOT_MODELLED`` for like teeth, and for unlike teeth.
 _ALIKE = "The teeth are perfect: the parameter file states no tooth errors, so there are no sidebands."
 #: The same for like teeth, where teeth of an assumed class are drawn.
@@ -114,8 +117,26 @@ def _how_sure(results: Results, facts: Mapping[str, Fact]) -> tuple[str, ...]:
     return (
         f"Solved right? {facts['second_program'].claim}.",
         f"Inputs: {inputs}.{ranges}",
-        f"Compared with a measurement? {'No' if record is None else record.claim}.",
+        f"Compared with a measurement? {measurement_words(results, record)}.",
     )
+
+
+def measurement_words(results: Results, record: Fact | None) -> str:
+    """Return what the record beside the prediction says, and which records the inputs are fitted to."""
+    pair = results.given
+    if not pair.posterior:
+        return "No" if record is None else record.claim
+    known = [source for _, source in pair.sources if source.startswith(FROM_RECORD)]
+    names = f": {_shortened(known[0].removeprefix(FROM_RECORD))}" if known else ""
+    fitted = f"inputs and their ranges are fitted to records{names}"
+    return f"Not beside this prediction; {fitted}" if record is None else f"{record.claim}; {fitted}"
+
+
+def _shortened(names: str) -> str:
+    """Names of records, each with its speed and torque in brackets; of many the first ones and a number."""
+    parts = names.split("), ")
+    more = len(parts) - _NAMED_RECORDS
+    return names if more <= 1 else f"{'), '.join(parts[:_NAMED_RECORDS])}) and {more} more"
 
 
 def _remark(results: Results) -> str:

@@ -18,7 +18,7 @@ from validation.prediction.static import StaticPair
 from validation.reporting.actions import Action
 from validation.reporting.facts import Fact, Scope, rpm
 from validation.reporting.first_numbers import Number, first_numbers
-from validation.reporting.page_one import PageOne, page_one, title
+from validation.reporting.page_one import PageOne, measurement_words, page_one, title
 from validation.reporting.results import Results
 from validation.reporting.verdict import Judgement, Verdict
 
@@ -57,7 +57,7 @@ def page_without_motion(results: Results, error: NumericalError) -> PageOne:
         sure=(
             _NOTHING_COMPARED,
             f"Inputs: {assumed} of {known_count + assumed} inputs are assumed.",
-            "Compared with a measurement? No.",
+            f"Compared with a measurement? {measurement_words(results, None)}.",
         ),
         remark="" if predicted else _STATIC,
         not_modelled="Not modelled: helix; misalignment; housing and sound radiation.",

@@ -75,7 +75,7 @@ def open_cluster(
     ClusterStopped : the workers of "local:N" do not start; later, in calls: the cluster cannot go on
     """
     wait = real_number("wait_seconds", wait_seconds, 0.0, 1e6, unit="s", action="Give the longest wait.")
-    workers = _workers_on_this_machine(address)
+    workers = workers_on_this_machine(address)
     try:
         import distributed
     except ImportError:
@@ -115,7 +115,7 @@ def open_cluster(
         yield cluster
 
 
-def _workers_on_this_machine(address: str) -> int:
+def workers_on_this_machine(address: str) -> int:
     """Return N of "local:N", or 0 for the address of a scheduler. What is neither is refused."""
     text = str(address)
     if (on_this_machine := _ON_THIS_MACHINE.fullmatch(text)) is not None:

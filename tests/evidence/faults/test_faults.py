@@ -117,6 +117,7 @@ def test_a_sound_report_passes_and_faults_in_it_are_seen(pair):
     assert seen_by(None, [pair]) == ()
     both = [key for key in REPORT_FAULTS if key.startswith(("order_", "force_", "axis_", "csv_"))]
     both.remove("force_least")  # where contact is lost, the least of both is zero
+    both.remove("force_sentence")  # a calm pair has its largest force on one tooth: both factors are equal
     number = int(source_digest()[:8], 16)
     for key in (both[number % len(both)], both[number // 97 % len(both)]):
         assert seen_by(REPORT_FAULTS[key], [pair]), key

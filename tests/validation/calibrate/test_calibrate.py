@@ -110,7 +110,7 @@ def test_without_a_discrepancy_the_posterior_of_a_wrong_model_is_narrower(wrong_
 
 def test_an_order_that_no_input_explains_is_printed(wrong_model):
     unexplained = wrong_model[0].unexplained
-    assert unexplained[0].order == 5.0
+    assert unexplained[0].place == "order 5"
     assert unexplained[0].words in wrong_model[0].sentences
 
 

@@ -1,5 +1,6 @@
 """The fitted file: read again it is the same pair, and its ranges are those of the posterior."""
 
+import json
 from dataclasses import replace
 
 import numpy as np
@@ -15,6 +16,7 @@ from validation.prediction.compare import compare
 from validation.prediction.inputs import uncertain_inputs
 from validation.prediction.motion import predicted
 from validation.prediction.uncertainty import uncertainty
+from validation.reporting.page_one import measurement_words
 from validation.reporting.results import Results
 
 RUNNER = CliRunner()
@@ -98,6 +100,12 @@ def test_variants_of_a_fitted_pair_run_in_the_same_machines(fitted):
 def test_report_reads_the_file(fitted, tmp_path):
     written = spurcheck.report(str(fitted), tmp_path / "report", quick=True, progress=False)
     assert not written.failed
+    page = " ".join(json.loads((tmp_path / "report" / "report.json").read_text(encoding="utf-8"))["how_sure"])
+    said = (
+        "Compared with a measurement? Not beside this prediction; inputs and their ranges are fitted to "
+        "records: run 1450 rpm (1450 rpm, 80 N m)."
+    )
+    assert said in page
     parameters = (tmp_path / "report" / "tables" / "parameters.csv").read_text(encoding="utf-8")
     line = next(one for one in parameters.splitlines() if one.startswith("mesh.stiffness_factor"))
     assert "by records" in line
@@ -114,6 +122,22 @@ def test_page_1_has_the_ranges_of_the_machines(one_run, fitted):
         ends = [value * (1.0 + end) for end in results.spread(name)]
         assert ends == pytest.approx(list(np.percentile(machines, [5.0, 95.0])), rel=1e-5)
         assert value == pytest.approx(one_run.machines.numbers[0][name], rel=1e-3)
+
+
+def test_many_records_are_named_by_the_first_ones(fitted):
+    pair = spurcheck.load_gear_pair(fitted)
+    rows = [f"run {j} ({j}00 rpm, 80 N m)" for j in range(1, 8)]
+
+    def said(count):
+        source = f"from record {', '.join(rows[:count])}"
+        return measurement_words(Results(pair.with_({"sources": {"gear.mass": source}}), SMALL), None)
+
+    start = "Not beside this prediction; inputs and their ranges are fitted to records"
+    assert said(4) == f"{start}: {', '.join(rows[:4])}"
+    assert said(7) == f"{start}: {', '.join(rows[:3])} and 4 more"
+    without = Results(pair.with_({"sources": {"gear.mass": "drawing"}}), SMALL)
+    assert measurement_words(without, None) == start
+    assert measurement_words(Results(rig_pair(), SMALL), None) == "No"
 
 
 def _written(folder, truth_values):
@@ -139,8 +163,14 @@ def test_the_command_writes_the_file_and_says_what_is_not_known(truth, tmp_path,
     result = RUNNER.invoke(app, line)
     assert result.exit_code == 0, result.output
     assert "They do not know: bearings.pinion.oloa_damping_ratio" in " ".join(result.output.split())
-    assert "next test: transmission error" in " ".join(result.output.split())
+    assert "Next test: transmission error" in " ".join(result.output.split())
     assert spurcheck.load_gear_pair("fitted.toml").posterior
+    assert "Next test: transmission error" in (tmp_path / "fitted.toml").read_text(encoding="utf-8")
+    numbers = json.loads(
+        RUNNER.invoke(app, ["calibrate", "pair.toml", "run.toml", "--machines", "16", "--json"]).stdout
+    )
+    assert len(numbers["next_tests"]) == 20
+    assert numbers["next_tests"][0]["left"]["bearing_rms"] < 1.0
     again = RUNNER.invoke(app, line)
     assert again.exit_code == 2
     assert "--force" in again.output

@@ -16,6 +16,7 @@ from validation.calibrate.next_test import (
     _truths,
     next_tests,
     page_one_deviations,
+    recommendation,
 )
 from validation.prediction.motion import predicted
 
@@ -36,23 +37,45 @@ def test_candidates_are_ranked_and_leave_a_share(candidates):
     for one in candidates:
         assert set(one.left) == set(RESULTS)
         assert all(0.0 < share <= 1.0 for share in one.left.values())
-        assert f"{one.speed_rpm:.4g} rpm" in one.words
+        assert f"{one.speeds_rpm[-1]:.4g} rpm" in one.words
 
 
 def test_more_channels_never_leave_more(candidates):
-    by_point = {(one.speed_rpm, one.torque, len(one.channels)): one for one in candidates}
-    assert len(by_point) == len(candidates) == 16
-    for (speed, torque, count), one in by_point.items():
+    by_point = {(one.speeds_rpm, one.torque, len(one.channels)): one for one in candidates}
+    assert (
+        len(by_point) == len(candidates) == 20
+    )  # four speeds and their sweep, two torques, two lists of channels
+    for (speeds, torque, count), one in by_point.items():
         if count > 1:
-            alone = by_point[speed, torque, 1]
+            alone = by_point[speeds, torque, 1]
             assert all(one.left[name] <= 1.001 * alone.left[name] for name in RESULTS)
 
 
+def test_a_sweep_never_leaves_more_than_its_runs(candidates):
+    sweeps = [one for one in candidates if len(one.speeds_rpm) > 1]
+    assert len(sweeps) == 4
+    for sweep in sweeps:
+        assert sweep.speeds_rpm == pytest.approx((725.0, 1450.0, 2175.0, 2900.0))
+        for run in candidates:
+            if run.torque == sweep.torque and run.channels == sweep.channels:
+                assert all(sweep.left[name] <= 1.001 * run.left[name] for name in RESULTS)
+
+
+def test_the_recommendation_is_the_best_run_and_the_best_sweep(exact, candidates):
+    run, sweep = recommendation(candidates)
+    lone = [one for one in candidates if len(one.speeds_rpm) == 1]
+    assert lone[0].words in run
+    assert run.startswith("Next test: ")
+    assert sweep.startswith("Or a sweep: ")
+    assert "725, 1450, 2175 and 2900 rpm" in sweep
+    assert recommendation(()) == ()
+
+
 def test_the_recommended_test_leaves_what_was_promised(exact, candidates, truth):
-    of_pair = [one for one in candidates if one.torque == 80.0]
+    of_pair = [one for one in candidates if one.torque == 80.0 and len(one.speeds_rpm) == 1]
     kept = []
     for one in (of_pair[0], of_pair[-1]):
-        new = rig_record(truth, rpm=one.speed_rpm, seed=4, quantities=one.channels)
+        new = rig_record(truth, rpm=one.speeds_rpm[0], seed=4, quantities=one.channels)
         after = calibrate(rig_pair(), [rig_record(truth), new], False, machines=64, progress=False)
         shares = page_one_deviations(after) / page_one_deviations(exact)
         kept.append(float(np.exp(np.log(shares).mean())))

@@ -9,7 +9,6 @@ import spurcheck
 from lumped.errors import ParameterError
 from tests.validation.calibrate.rig import rig_pair, rig_record
 from validation.calibrate import calibrate
-from validation.check.curves import ValuesOverSpeed
 
 
 def _channel(record, values):
@@ -40,10 +39,6 @@ def _few_samples(record):
     )  # fmt: skip
 
 
-def _over_speed(record):
-    return ValuesOverSpeed("sweep", np.array([100.0, 200.0]), ())
-
-
 def _statics_alone(record):
     return replace(record, channels=(), statics={"contact_ratio": np.array(1.6)})
 
@@ -66,7 +61,6 @@ WRONG = {
     _noise_alone: "%",
     _rest: "no motion",
     _few_samples: "at least 8 mesh cycles",
-    _over_speed: "one record for each speed",
     _statics_alone: "at least one",
     _another_pair: "a motion of this pair",
     _other_teeth: "numbers of teeth|speed of the samples",

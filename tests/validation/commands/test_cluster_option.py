@@ -5,6 +5,7 @@ import pytest
 from lumped import load_gear_pair
 from tests.unlike_pairs import unlike_pair
 from validation.exchange import read_netcdf
+from validation.studies.cluster import ONE_THREAD
 
 from .conftest import refused, run
 
@@ -17,6 +18,16 @@ def files(tmp_path_factory):
         (folder / f"{name}.toml").write_text(unlike_pair(name).to_toml())
     (folder / "preset.toml").write_text(load_gear_pair("nasa_28_28").to_toml())
     return folder
+
+
+@pytest.fixture(scope="module")
+def address():
+    """Address of a scheduler with two workers on this machine, which all commands use: a start costs 9 s."""
+    distributed = pytest.importorskip("distributed", reason="needs distributed (extra: cluster)")
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, protocol="tcp", dashboard_address="127.0.0.1:0", env=ONE_THREAD
+    ) as cluster:
+        yield cluster.scheduler_address
 
 
 COMMANDS = {
@@ -34,10 +45,10 @@ COMMANDS = {
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", COMMANDS)
-def test_a_cluster_writes_the_bytes_of_this_process(files, tmp_path, name):
+def test_a_cluster_writes_the_bytes_of_this_process(files, address, tmp_path, name):
     command, pair, *rest = COMMANDS[name]
     here = run(command, files / pair, *rest, "-o", tmp_path / "here.nc")
-    there = run(command, files / pair, *rest, "-o", tmp_path / "there.nc", "--cluster", "local:2")
+    there = run(command, files / pair, *rest, "-o", tmp_path / "there.nc", "--cluster", address)
     assert (there.exit_code, there.stdout) == (here.exit_code, here.stdout.replace("here.nc", "there.nc"))
     assert (tmp_path / "there.nc").read_bytes() == (tmp_path / "here.nc").read_bytes()
     assert read_netcdf(tmp_path / "there.nc").data_vars
@@ -57,3 +68,11 @@ def test_a_cluster_writes_the_bytes_of_this_process(files, tmp_path, name):
 def test_what_no_cluster_can_do_is_refused(files, arguments, words):
     command, *rest = arguments
     assert words in refused(command, files / "preset.toml", *rest)
+
+
+@pytest.mark.parametrize("address", ["head", "local:0", "tcp://head:70000"])
+@pytest.mark.parametrize("command", ["uncertainty", "compare", "stability", "sweep"])
+def test_an_address_is_checked_before_a_file_is_read(tmp_path, command, address):
+    words = refused(command, tmp_path / "not_there.toml", "--cluster", address)
+    assert f"--cluster = {address}: allowed" in words
+    assert "not_there" not in words

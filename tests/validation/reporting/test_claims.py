@@ -28,7 +28,7 @@ from validation.reporting.results import Results
 from validation.reporting.verdict import NEAR, Verdict
 
 #: As a quick report, but for charts that are drawn, and for the time of a search that may stay open.
-EFFORT = Effort(0, 0, 0, QUICK.sweep_speeds, 161, 9, 9, 1.0, 0, "quick report")
+EFFORT = Effort(0, 0, 0, QUICK.sweep_speeds, 41, 5, 9, 0.3, 0, "quick report")
 #: Kinds whose jumps are all found: their search ends by itself, not by its time, on a busy machine too.
 JUMPING = ("jump near", "jump far", "contact lost")
 

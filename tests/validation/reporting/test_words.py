@@ -547,7 +547,11 @@ def test_a_pair_too_slow_for_the_second_program_has_a_report():
     assert why.text.startswith("operating.pinion_speed = 114 rpm: allowed at least")
     assert (str(results.second), results.same_equations) == (str(results.check), None)
     assert results.samples == SMALL.samples // 2  # each costs much
-    few = Results(results.pair, replace(QUICK, sweep_speeds=9))
+    near = results.pair.with_({"operating.speed_range": [100.0, 130.0]})
+    few = Results(
+        near,
+        replace(QUICK, sweep_speeds=9, chart_speeds=21, chart_dampings=5, jump_seconds=0.5, drawn_machines=0),
+    )
     vars(few)["check"] = results.check
     first = page_one(few)  # bare discs swing: tenfold inertia leaves 1 %
     assert (first.verdict, "motor and brake" in first.actions[0].text) == (Verdict.OUTSIDE, True)
@@ -573,6 +577,16 @@ def _not_varied():
     return results
 
 
+#: Results of like teeth on springs; and those on the supports of the prediction.
+_ON_SPRINGS = ("check", "chart", "sweep", "jump_search", "proven_stability")
+_ON_SUPPORTS = ("like", "resonance")
+
+
+def _of_the_motion(results):
+    """Results that neither the sources of inputs nor their ranges enter, for a pair that differs in these."""
+    return {name: getattr(results, name) for name in (*_ON_SPRINGS, *_ON_SUPPORTS)}
+
+
 @pytest.mark.parametrize("words", ["Assumed", "a guess", "estimated"])
 def test_words_of_a_source_make_no_absolute_level(words):
     """They were a source like a measurement: 0 values assumed, and usable for absolute levels."""
@@ -581,7 +595,7 @@ def test_words_of_a_source_make_no_absolute_level(words):
         less.pair.with_({"sources": dict.fromkeys((*field_values(less.pair), "mesh.stiffness"), words)}),
         less.effort,
     )
-    reworded.__dict__ |= {name: vars(less)[name] for name in ("check", "chart", "like") if name in vars(less)}
+    vars(reworded).update(_of_the_motion(less))
     assert reworded.inputs == less.inputs
     assert page_one(reworded).verdict is page_one(less).verdict is Verdict.UNCERTAIN
     table = next(one for one in inputs.write(reworded).blocks if one.key == "parameters")
@@ -602,7 +616,7 @@ def test_more_information_never_gives_a_worse_verdict(what):
     less = _not_varied()
     base = known_sizes(reference.pair) if what == "known" else reference.pair
     more = Results(base.with_(changes[what]), less.effort)
-    more.__dict__ |= {"check": reference.check, "chart": reference.chart}  # on springs in both
+    vars(more).update({name: getattr(less, name) for name in _ON_SPRINGS})  # on springs in both
     poorer = page_one(less)
     first = page_one(more)
     assert list(Verdict).index(first.verdict) <= list(Verdict).index(poorer.verdict)
@@ -633,7 +647,7 @@ def test_a_pair_whose_runs_do_not_settle_must_not_run_here(motion):
     """Whose the numbers are: those of a stable motion beside chaos, or of the linear motion."""
     less = _not_varied()
     results = Results(less.pair, less.effort)
-    results.__dict__ |= {name: vars(less)[name] for name in ("check", "chart", "like") if name in vars(less)}
+    vars(results).update(_of_the_motion(less))
     reason = "" if motion is Motion.FOLLOWED else "A run has not come to a motion."
     results.__dict__["prediction"] = replace(less.prediction, motion=motion, roams=True, reason=reason)
     first = page_one(results)

@@ -254,4 +254,6 @@ def _noise(channel: ChannelOfData) -> float | None:
 
 def _speed_column(channel: ChannelOfData, values: FloatArray) -> SpeedColumn:
     assert channel.value is not None
-    return SpeedColumn(channel.name, channel.quantity, channel.value, values, channel.order or 0.0)
+    return SpeedColumn(
+        channel.name, channel.quantity, channel.value, values, channel.order or 0.0, _noise(channel)
+    )
