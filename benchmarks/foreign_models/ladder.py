@@ -1,6 +1,6 @@
 """What the comparison says of the wrong models: the truth beside the ladder of explanations.
 
-    python -m benchmarks.foreign_models.ladder first|second|third|fourth|fifth|sixth [words of names ...]
+    python -m benchmarks.foreign_models.ladder first|second|third|fourth|fifth|sixth|seventh [words]
 
 A reader decides whether the first explanation is the truth in other words: the registry has no names of the
 mistakes, and the mistakes have no names of the registry.
@@ -18,6 +18,7 @@ from benchmarks.foreign_models.cases import cases as first_set
 from benchmarks.foreign_models.fifth import judging as fifth_set
 from benchmarks.foreign_models.fourth import judging as fourth_set
 from benchmarks.foreign_models.second import held_back as second_set
+from benchmarks.foreign_models.seventh import judging as seventh_set
 from benchmarks.foreign_models.sixth import judging as sixth_set
 from benchmarks.foreign_models.third import judging as third_set
 from validation.check import check
@@ -29,6 +30,7 @@ SETS: Mapping[str, Callable[[str], Sequence[Case]]] = {
     "fourth": fourth_set,
     "fifth": fifth_set,
     "sixth": sixth_set,
+    "seventh": seventh_set,
 }
 
 

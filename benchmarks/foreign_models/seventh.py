@@ -17,6 +17,7 @@ from typing import Any
 
 from benchmarks.foreign_models import seventh_mistakes as wrong
 from benchmarks.foreign_models import seventh_pairs as pairs
+from benchmarks.foreign_models.cases import Case as Record
 from benchmarks.foreign_models.recipe import Settings
 from benchmarks.foreign_models.seventh_runs import (
     Case,
@@ -378,6 +379,15 @@ SEVENTH_SOUND = (
 )
 
 CASES = (*SEVENTH_WRONG, *SEVENTH_SOUND)
+
+
+def judging(kind: str | None = None) -> list[Record]:
+    """Return the cases of the seventh set, of a kind ("sound" or "wrong") or all."""
+    wrong = [
+        Record(f"seventh {one.name}", "wrong", (one.truth,), one.pair, one.curves) for one in SEVENTH_WRONG
+    ]
+    sound = [Record(f"seventh {one.name}", "sound", (), one.pair, one.curves) for one in SEVENTH_SOUND]
+    return [record for record in (*sound, *wrong) if kind in (None, record.kind)]
 
 
 def main(words: list[str]) -> int:
