@@ -74,6 +74,7 @@ def pairs():
             {**COULOMB, "mesh.relief": "ignored", "pinion.mounting": {"eccentricity": "10 um"}}
         ),
         "soft bearings": unlike.with_({"bearings.stiffness": 6e7}),
+        "polymer": unlike.with_({"gear.youngs_modulus": "3 GPa", "gear.poisson_ratio": 0.38}),
         "rough": unlike.with_(
             {
                 "friction.law": "xu_kahraman",
@@ -129,6 +130,7 @@ FIXED = {
     "exchanged": ("unlike", "bearings"),
     "pressure angle": ("unlike", 22.5),
     "profile shifts": ("unlike", None),
+    "material of the gears": ("polymer", "steel"),
     "one face width": ("unlike", None),
     "friction sign": ("unlike", None),
     "part of friction": ("unlike", None),
