@@ -120,7 +120,9 @@ def mesh_frequency(curves: Curves, pair: GearPair, *, mistakes: bool = True) -> 
         # Multiples of the true frequency carry a part of the orders, fractions carry all of them.
         more = most > _MOST and most > _TIMES * max(at_pair, 1e-3)
         # A frequency with orders in common carries much of the motion too, but the motion does not repeat.
-        if (more or (most > _ENOUGH and carried.repeats(trial, best.factor))) and not _is_multiple(trial, best):
+        if (more or (most > _ENOUGH and carried.repeats(trial, best.factor))) and not _is_multiple(
+            trial, best
+        ):
             best, at_pair = Frequency(trial, cause), most / _TIMES
     if not best.cause and mistakes and at_pair < _LITTLE:
         return _elsewhere(carried, best)
