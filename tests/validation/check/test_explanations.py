@@ -130,7 +130,7 @@ FIXED = {
     "exchanged": ("unlike", "bearings"),
     "pressure angle": ("unlike", 22.5),
     "profile shifts": ("unlike", None),
-    "material of the gears": ("polymer", "steel"),
+    "material of the gears": ("polymer", "of the pinion"),
     "one face width": ("unlike", None),
     "friction sign": ("unlike", None),
     "part of friction": ("unlike", None),
