@@ -199,6 +199,7 @@ FURTHER = (
     ("lever arms of friction", "from the pitch point"),
     ("lever arms of friction", "base radii"),
     ("zones of contact", "circular pitch, about the middle"),
+    ("zones of contact", "halves, about the middle"),
     ("table of the stiffness", -12),
     ("supports", "rigid gear"),
     ("supports", "rigid across"),
