@@ -37,6 +37,9 @@ _REPEATS_BETTER = 0.25
 #: A mistaken speed or time must carry this share of the variation, and this many times as much as the pair's.
 _MOST = 0.5
 _TIMES = 4.0
+#: Share that is enough where the motion repeats at the mistaken frequency, and not at that of the pair: a
+#: motion with many orders has half of its variation above the first ones.
+_ENOUGH = 0.25
 #: Change over a mesh cycle, over the variance, of curves that repeat there and not at the frequency of the
 #: pair: at most the first number, and the second number times the change at the frequency of the pair.
 _SMALL_CHANGE = 0.05
@@ -117,7 +120,9 @@ def mesh_frequency(curves: Curves, pair: GearPair, *, mistakes: bool = True) -> 
         # Multiples of the true frequency carry a part of the orders, fractions carry all of them.
         more = most > _MOST and most > _TIMES * max(at_pair, 1e-3)
         # A frequency with orders in common carries much of the motion too, but the motion does not repeat.
-        if (more or (most > _MOST and carried.repeats(trial, best.factor))) and not _is_multiple(trial, best):
+        if (more or (most > _ENOUGH and carried.repeats(trial, best.factor))) and not _is_multiple(
+            trial, best
+        ):
             best, at_pair = Frequency(trial, cause), most / _TIMES
     if not best.cause and mistakes and at_pair < _LITTLE:
         return _elsewhere(carried, best)

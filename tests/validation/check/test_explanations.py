@@ -74,6 +74,7 @@ def pairs():
             {**COULOMB, "mesh.relief": "ignored", "pinion.mounting": {"eccentricity": "10 um"}}
         ),
         "soft bearings": unlike.with_({"bearings.stiffness": 6e7}),
+        "polymer": unlike.with_({"gear.youngs_modulus": "3 GPa", "gear.poisson_ratio": 0.38}),
         "rough": unlike.with_(
             {
                 "friction.law": "xu_kahraman",
@@ -129,6 +130,7 @@ FIXED = {
     "exchanged": ("unlike", "bearings"),
     "pressure angle": ("unlike", 22.5),
     "profile shifts": ("unlike", None),
+    "material of the gears": ("polymer", "of the pinion"),
     "one face width": ("unlike", None),
     "friction sign": ("unlike", None),
     "part of friction": ("unlike", None),
@@ -197,6 +199,7 @@ FURTHER = (
     ("lever arms of friction", "from the pitch point"),
     ("lever arms of friction", "base radii"),
     ("zones of contact", "circular pitch, about the middle"),
+    ("zones of contact", "halves, about the middle"),
     ("table of the stiffness", -12),
     ("supports", "rigid gear"),
     ("supports", "rigid across"),

@@ -39,3 +39,19 @@ def test_sampling_rate_misstated(pair):
 
 def test_the_true_frequency_stays(pair):
     assert mesh_frequency(curves_of(pair), pair).factor == pytest.approx(1.0, abs=1e-6)
+
+
+def test_speed_of_the_gear_where_the_first_orders_carry_less_than_half(pair):
+    """Pulses: the first six orders carry 44 % of the variation; the motion repeats at one frequency alone."""
+    speed = pair.operating.pinion_speed * 30.0 / np.pi
+    faster = pair.with_({"operating.pinion_speed": speed * 24 / 16})
+    curves = curves_of(faster)
+    cycles = curves.places / faster.geometry.mesh_period
+    pulses = np.exp(-(((cycles % 1.0 - 0.5) / 0.015) ** 2))
+    orders = np.abs(np.fft.rfft(pulses[: cycles.size // 6])) ** 2
+    assert 0.3 < orders[1:7].sum() / orders[1:].sum() < 0.5
+    pulsed = replace(curves, channels=(replace(curves.channels[0], values=pulses),))
+    frequency = mesh_frequency(pulsed, pair)
+    assert frequency.factor == pytest.approx(1.5, rel=1e-3)
+    assert "gear" in frequency.cause
+    assert mesh_frequency(pulsed, faster).factor == pytest.approx(1.0, abs=1e-6)

@@ -25,6 +25,8 @@ from validation.check.explanations.fields import (
 )
 from validation.check.problem import Problem
 
+#: Young's modulus [GPa] and Poisson's ratio of steel, the defaults of many programs.
+_STEEL = (206.0, 0.3)
 #: Trial factors of an addendum and a module, and of a centre distance.
 _LENGTH = (0.8, 0.87, 0.94, 1.06, 1.13, 1.25)
 _CENTRES = (0.99, 0.993, 0.9955, 0.998, 1.002, 1.0045, 1.007, 1.01)
@@ -226,6 +228,31 @@ def _one_width(problem: Problem, variant: Variant) -> list[Choice]:
     ]
 
 
+def _material(problem: Problem, variant: Variant) -> list[Choice]:
+    """Both gears of one material, or each of that of the other. What repeats the file is left out."""
+    pinion, gear = (
+        (to_stated(one.youngs_modulus, "GPa"), one.poisson_ratio)
+        for one in (variant.pair.pinion, variant.pair.gear)
+    )
+    cases = (
+        ("of the pinion", "both gears of the pinion's material", (pinion, pinion)),
+        ("of the gear", "both gears of the gear's material", (gear, gear)),
+        ("exchanged", "the materials of pinion and gear exchanged", (gear, pinion)),
+        ("steel", "both gears of steel", (_STEEL, _STEEL)),
+    )
+    choices = []
+    seen = [(pinion, gear)]
+    for label, words, materials in cases:
+        if materials in seen:
+            continue
+        seen.append(materials)
+        fields = {}
+        for one, (modulus, poisson) in zip(GEARS, materials, strict=True):
+            fields |= {f"{one}.youngs_modulus": modulus, f"{one}.poisson_ratio": poisson}
+        choices.append(choice(label, words, constant(fields)))
+    return choices
+
+
 def _causes() -> Iterator[Cause]:
     yield fixed_values(
         "pressure angle",
@@ -244,6 +271,12 @@ def _causes() -> Iterator[Cause]:
         "one tooth or two more or less on a gear",
         "pinion, gear: -2, -1, 1, 2",
         _number_of_teeth,
+    )
+    yield fixed_values(
+        "material of the gears",
+        "Young's modulus and Poisson's ratio of another material",
+        "of the pinion, of the gear, exchanged, steel",
+        _material,
     )
     yield fixed_values("one face width", "one face width for both gears", "pinion, gear", _one_width)
     yield free_factor("face width", "the face width of both gears", NEAR, _width)

@@ -46,7 +46,7 @@ def _path(start: float, end: float) -> Callable[[Variant], Variant]:
 
 
 def _contact_ratio(problem: Problem, variant: Variant) -> list[Choice]:
-    """Other contact ratios: zones of contact exchanged, the circular pitch for the base pitch."""
+    """Other contact ratios: zones of contact exchanged or equal, the circular pitch for the base pitch."""
     if not may_vary(problem, variant):
         return []
     ratio = variant.pair.geometry.contact_ratio
@@ -59,6 +59,10 @@ def _contact_ratio(problem: Problem, variant: Variant) -> list[Choice]:
         "circular pitch": (
             ratio * cosine,
             "the circular pitch in place of the base pitch in the contact ratio",
+        ),
+        "halves": (
+            math.floor(ratio) + 0.5,
+            "one tooth pair more for half of the mesh cycle, as in a square wave",
         ),
     }
     return [
@@ -260,8 +264,8 @@ def _causes() -> Iterator[Cause]:
     pitches = f"about {_ENDS[0]:g} to {_ENDS[-1]:g} base pitches"
     yield fixed(
         "zones of contact",
-        "another contact ratio: zones exchanged, or the circular pitch for the base pitch",
-        "zones exchanged, circular pitch; from A, about the middle",
+        "another contact ratio: zones exchanged, of equal length, the circular pitch for the base pitch",
+        "zones exchanged, circular pitch, halves; from A, about the middle",
         _contact_ratio,
     )
     yield fixed(
