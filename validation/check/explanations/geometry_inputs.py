@@ -246,7 +246,7 @@ def _material(problem: Problem, variant: Variant) -> list[Choice]:
         if materials in seen:
             continue
         seen.append(materials)
-        fields = {}
+        fields: dict[str, float] = {}
         for one, (modulus, poisson) in zip(GEARS, materials, strict=True):
             fields |= {f"{one}.youngs_modulus": modulus, f"{one}.poisson_ratio": poisson}
         choices.append(choice(label, words, constant(fields)))
