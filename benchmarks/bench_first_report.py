@@ -1,13 +1,14 @@
-"""Processor time of compilation, of the first and second report, and of small commands, over a baseline.
+"""Time of compilation, of the first and second report, and of small commands, over a baseline.
 
     python -m benchmarks.bench_first_report --baseline FOLDER [--pair nasa_28_28] [--rows kernels,first]
 
 FOLDER is a checkout of the commit that is the baseline (``git worktree add FOLDER c4723bf8``). Both run in
-turn, in fresh processes with the same Python, each with cache folders of its own. Times are user and system
-time of the process and its children: on a machine that others use, wall time says nothing.
+turn, in fresh processes with the same Python, each with cache folders of its own. Processor time is user and
+system time of the process and its children. Wall time means something on a machine that nobody else uses.
 
 - kernels: all compilations of a report in one process, from an empty cache
-- first: the whole command with empty caches of kernels and finite elements, its second process included
+- first: the whole command with empty caches of kernels and finite elements, its second process included; it
+  leaves the caches for the rows behind it
 - second: the same command again
 - version, presets, init: the least of five runs
 """
@@ -15,12 +16,15 @@ time of the process and its children: on a machine that others use, wall time sa
 from __future__ import annotations
 
 import argparse
+import math
 import os
 import resource
 import subprocess
 import sys
 import tempfile
+import time
 from pathlib import Path
+from typing import NamedTuple
 
 COMMAND = "from validation.cli import main; main()"
 #: On one processor there is no second process. The sum is of compilations that no other compilation contains.
@@ -55,6 +59,13 @@ except SystemExit:
 ROWS = ("kernels", "first", "second", "version", "presets", "init")
 
 
+class Seconds(NamedTuple):
+    """Processor time and wall time of a row [s]; NaN: not measured."""
+
+    processor: float
+    wall: float = float("nan")
+
+
 class Tree:
     """A checkout, with caches of its own in a folder."""
 
@@ -70,8 +81,9 @@ class Tree:
             "MPLBACKEND": "Agg",
         }
 
-    def run(self, code: str, *arguments: str, **environment: str) -> tuple[float, str]:
-        """Processor time of a fresh process and its children [s], and what it wrote to stderr."""
+    def run(self, code: str, *arguments: str, **environment: str) -> tuple[Seconds, str]:
+        """Time of a fresh process and its children, and what it wrote to stderr."""
+        begun = time.perf_counter()
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
         done = subprocess.run(
             [sys.executable, "-P", "-c", code, *arguments],
@@ -81,17 +93,18 @@ class Tree:
             capture_output=True,
             text=True,
         )
+        wall = time.perf_counter() - begun
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
-        seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-        return seconds, done.stderr
+        processor = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+        return Seconds(processor, wall), done.stderr
 
-    def row(self, name: str, pair: str) -> float:
-        """Processor time of one row [s]."""
+    def row(self, name: str, pair: str) -> Seconds:
+        """Time of one row."""
         if name == "kernels":
             _, written = self.run(
                 COMPILING, "report", pair, "-o", "compiled", NUMBA_CACHE_DIR=str(self.folder / "one_process")
             )
-            return float(written.split()[-1])
+            return Seconds(float(written.split()[-1]))
         if name in ("first", "second"):
             return self.run(COMMAND, "report", pair, "-o", name)[0]
         arguments = {
@@ -103,7 +116,7 @@ class Tree:
 
 
 def main(baseline: Path, pair: str, rows: list[str]) -> None:
-    print("| processor time [s] | baseline | here | ratio |\n|---|---|---|---|", flush=True)
+    print("| time [s] | baseline | here | ratio |\n|---|---|---|---|", flush=True)
     with tempfile.TemporaryDirectory() as folder:
         trees = [
             Tree(baseline, Path(folder, "baseline")),
@@ -111,7 +124,9 @@ def main(baseline: Path, pair: str, rows: list[str]) -> None:
         ]
         for name in rows:
             before, after = (tree.row(name, pair) for tree in trees)
-            print(f"| {name} | {before:.2f} | {after:.2f} | {after / before:.2f} |", flush=True)
+            for kind, old, new in zip(Seconds._fields, before, after, strict=True):
+                if math.isfinite(new):
+                    print(f"| {name}, {kind} | {old:.2f} | {new:.2f} | {new / old:.2f} |", flush=True)
 
 
 if __name__ == "__main__":
