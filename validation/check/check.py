@@ -24,9 +24,10 @@ from lumped.model.periodic_system import Supports, with_supports
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import ProgressRequest
-from validation.check.curve_orders import drift, uniform_rate
+from validation.check.agreeing import TRANSIENT, drifting, of_agreeing
+from validation.check.curve_orders import uniform_rate
 from validation.check.curves import Channel, Curves, Role, ValuesOverSpeed
-from validation.check.digits import few_digits
+from validation.check.digits import coarse_step
 from validation.check.ladder import Explanation, Ladder, climb
 from validation.check.mesh_frequency import SAME
 from validation.check.misfit import LIMIT, Misfit
@@ -38,7 +39,7 @@ from validation.check.problem import Problem
 from validation.check.reading.other_model import OtherModel, other_model
 from validation.check.reading.reader import read
 from validation.check.reference import REFERENCE_SAMPLES, lumped_motion, multibody_motion
-from validation.check.samples import difference_at_no_order, peaks_to_peak, step_of_values
+from validation.check.samples import difference_at_no_order, peaks_to_peak
 from validation.check.static import StaticRung, static_rung
 from validation.check.words import (
     ladder_words,
@@ -56,19 +57,13 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 #: Default processor time of the search for explanations [s].
-BUDGET = 60.0
+BUDGET = 40.0
 #: A change between the last two blocks of cycles above this share of the motion is no settled motion.
 _SETTLED = 0.01
-#: A change between the first block of cycles and the last one above this share is a transient.
-_TRANSIENT = 0.1
 #: A rotation whose speed is within this factor of the nominal speed has the uniform rotation in it.
 _UNIFORM = 2.0
 #: A change of the motion with half the step above this share: the step is too long.
 _RESOLVED = 0.01
-#: A rotation drifts where it leaves its constant speed by this share of its vibration.
-_DRIFTS = 0.1
-#: Steps of written values above this share of the peak to peak are worth a sentence.
-_COARSE_STEP = 0.01
 #: Mesh frequency of the rung at low speed over the lowest natural frequency: the motion is nearly static.
 _LOW = 1.0 / 12.0
 #: Unit attribute of a variable whose channels differ in their unit.
@@ -109,7 +104,7 @@ class Check(DisplayedResult):
     second : misfit of the curves and the motion of the multibody model; None: it has no motion there
     discrepancy : misfit of the multibody model and our motion, at the channels of the curves; NaN: no motion
     ladder : search for explanations; None: the motion agrees, or no explanations were asked for. A motion
-        that agrees has one where its samples scatter
+        that agrees has one where what is not compared shows a mistake, such as a transient
     remarks : sentences on the curves: what was assumed, what was not compared
     """
 
@@ -378,9 +373,9 @@ def check(
         remarks=(*source.remarks, *_remarks(problem), *_remark_on_no_order(problem, allowed), *more),
     )
     agree = result.failed is None and all(row.total <= allowed for row in result.nearer.channels)
-    if explain and agree and (steps := few_digits(problem, allowed)):
-        scatter = Ladder(problem.misfit.value, steps, motion, runs=0, complete=True)
-        return replace(result, ladder=scatter)
+    if explain and agree and (steps := of_agreeing(problem, allowed)):
+        left_out = Ladder(problem.misfit.value, steps, motion, runs=0, complete=True)
+        return replace(result, ladder=left_out)
     if not explain or agree:
         return result
     return replace(result, ladder=climb(problem, limit=allowed, budget=seconds))
@@ -499,34 +494,27 @@ def _remarks(problem: Problem) -> tuple[str, ...]:
         remarks.append(
             f"The motion has not settled: the last cycles change by {percent(change)}. Run it longer."
         )
-    elif problem.settled.transient > _TRANSIENT:
+    elif problem.settled.transient > TRANSIENT:
         remarks.append(
             f"The curves begin with a transient: its orders differ by {percent(problem.settled.transient)}. "
             f"Compared are the last {problem.settled.compared * period} of {problem.settled.cycles * period} "
             "mesh cycles."
         )
-    used = problem.settled.used
     rotations = [
         row.channel.channel for row in problem.misfit.channels if row.channel.channel.kind.is_rotation
     ]
     whole = [one.name for one in rotations if _turns(problem, one)]
     if whole:
         remarks.append(f"Whole angles, compared without their uniform rotation: {', '.join(whole)}.")
-    drifting = [
-        row.channel.channel.name
-        for row in problem.misfit.channels
-        if row.channel.channel.kind.is_rotation
-        and drift(problem.cycles[used], row.channel.channel.values[used]) > _DRIFTS * row.scale
-    ]
-    if drifting:
+    drifts = [row.channel.channel.name for row in drifting(problem)]
+    if drifts:
         brake = float(problem.motion.motion.attrs["brake_torque"])
         remarks.append(
-            f"{', '.join(drifting)}: the speed drifts, because the torques do not balance. A brake torque of "
+            f"{', '.join(drifts)}: the speed drifts, because the torques do not balance. A brake torque of "
             f"{brake:.5g} N m holds it. The drift is not compared."
         )
     for channel in problem.curves.channels:
-        step = step_of_values(channel.values)
-        if step > _COARSE_STEP * float(np.ptp(channel.values)):
+        if step := coarse_step(channel.values):
             remarks.append(
                 f"{channel.name} is written in steps of {quantity(step, channel.kind.unit, 3)}, "
                 f"{percent(step / float(np.ptp(channel.values)))} of its peak to peak. Write more digits."

@@ -287,6 +287,11 @@ def drift(cycles: FloatArray, values: FloatArray) -> float:
     return abs(float(_rotation(cycles, values)[1])) * (0.5 * reach) ** 2
 
 
+def rate_of_drift(cycles: FloatArray, values: FloatArray) -> float:
+    """Return half of the constant acceleration of a rotation [rad per square mesh cycle]."""
+    return float(_rotation(cycles, values)[1])
+
+
 def _rotation(cycles: FloatArray, values: FloatArray) -> FloatArray:
     """Coefficients (2,) of the line and the parabola about the middle of a rotation.
 

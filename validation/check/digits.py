@@ -1,41 +1,38 @@
-"""Curves of a model that agree at every order, but whose samples scatter, as values of few digits do.
+"""Values that are written with few digits: the step in which they are written.
 
 Sources: docs/how_to/check_your_model.md, "Explanations".
 """
 
 from __future__ import annotations
 
-import math
+import numpy as np
 
-from validation.check.curve_orders import white_noise
-from validation.check.explanations.misreadings import FEW_DIGITS
-from validation.check.ladder import Explanation
-from validation.check.problem import Problem
-from validation.files.formatting import percent
+from lumped.typing import FloatArray
 
-#: Scatter over the rms of the motion that is worth a word, over the limit of the misfit.
-_SCATTERS = 2.0
+#: Most different values of rounded samples, how often each is repeated at least in the mean, and how near
+#: to a whole number the multiples of the step are.
+_FEW_VALUES = 100
+_REPEATED = 4
+_WHOLE = 0.02
+#: Steps of written values above this share of the peak to peak are worth a sentence.
+_COARSE_STEP = 0.01
 
 
-def few_digits(problem: Problem, limit: float) -> tuple[Explanation, ...]:
-    """Return the explanation of curves of a model that agree and scatter; none: they do not scatter.
+def step_of_values(values: FloatArray) -> float:
+    """Return the step in which values are written, as with few digits; 0 where no step shows.
 
-    A model has no noise. The scatter is that of third differences.
+    A step shows where many samples have few different values, and every difference of two values is a
+    multiple of the smallest one.
     """
-    if problem.curves.role != "model":
-        return ()
-    shares = {}
-    for row in problem.misfit.channels:
-        channel = row.channel.channel
-        size = row.channel.orders.size / math.sqrt(2.0)
-        if channel.tooth_pair is None and size > 0.0:
-            shares[channel.name] = white_noise(channel.values[problem.used(channel)]) / size
-    names = [name for name, share in shares.items() if share > _SCATTERS * limit]
-    if not names:
-        return ()
-    largest = max(shares[name] for name in names)
-    sentence = (
-        f"Compatible with few digits in {', '.join(names)}, as of angles in single precision: the samples "
-        f"scatter by {percent(largest)} of the motion"
-    )
-    return (Explanation(FEW_DIGITS.name, ", ".join(names), problem.misfit.value, sentence),)
+    different = np.unique(values)
+    if different.size < 3 or different.size > _FEW_VALUES or values.size < _REPEATED * different.size:
+        return 0.0
+    gaps = np.diff(different)
+    multiples = gaps / gaps.min()
+    return float(gaps.min()) if np.abs(multiples - np.round(multiples)).max() < _WHOLE else 0.0
+
+
+def coarse_step(values: FloatArray) -> float:
+    """Return the step in which values are written, where it is worth a sentence; else 0."""
+    step = step_of_values(values)
+    return step if step > _COARSE_STEP * float(np.ptp(values)) else 0.0

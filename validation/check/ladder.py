@@ -6,6 +6,7 @@ Sources: docs/how_to/check_your_model.md, "Explanations".
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -19,6 +20,8 @@ from validation.check.search import BudgetSpentError, Motions, Path, Search, Ste
 #: Paths that are followed at the same time, and most steps of a path.
 _BEAM = 3
 _MOST_STEPS = 4
+#: Share of the budget in which paths grow. In the rest steps are exchanged and left out.
+_OF_BEAM = 0.75
 #: Share of the limit at which the search stops.
 _ENOUGH = 0.2
 #: Shares of the misfit by which a step must lower it: the first step; a later step that does not reach the
@@ -134,11 +137,16 @@ def climb(
         most_motions=most_motions,
     )
     floor = search.floor(limit)
+    search.run_until(_OF_BEAM)
     best = _best_path(search, limit, floor)
+    complete = not search.spent
+    search.run_until(1.0)
     best = _exchanged(search, best, limit, floor)
     best = _pruned(search, best, limit, floor)
+    complete = complete and not search.spent
+    search.conclude()
     steps = tuple(_explanations(search, best, floor))
-    return Ladder(problem.misfit.value, steps, best.trial.motion, search.runs, complete=not search.spent)
+    return Ladder(problem.misfit.value, steps, best.trial.motion, search.runs, complete=complete)
 
 
 def _best_path(search: Search, limit: float, floor: float) -> Path:
@@ -179,10 +187,11 @@ def _starts(search: Search, floor: float) -> list[Path]:
                 continue
             for choice in cause.choices(problem, variant):
                 step = Step(cause, choice)
-                trial = search.trial((step,))
-                if trial is not None:
-                    paths.append(Path((step,), trial))
-                    search.archive[paths[-1].keys] = paths[-1]
+                with suppress(BudgetSpentError):
+                    trial = search.trial((step,))
+                    if trial is not None:
+                        paths.append(Path((step,), trial))
+                        search.archive[paths[-1].keys] = paths[-1]
     paths.sort(key=lambda path: path.score(floor))
     return [path for path in paths if path.score(floor) < _FAR * paths[0].score(floor)] or [start]
 
@@ -276,6 +285,11 @@ def _explanations(search: Search, best: Path, floor: float) -> list[Explanation]
             listed[changed[-1]] = replace(
                 one, misfit=misfit, sentence=f"{one.sentence}, with dampers [N s/m] that stay as they are"
             )
+            continue
+        if step.slight and listed:
+            # So small a change is no mistake. That the misfit follows it shows a motion that is sensitive.
+            words = f"{listed[-1].sentence}, near a motion that the slightest change alters"
+            listed[-1] = replace(listed[-1], misfit=misfit, sentence=words)
             continue
         listed.append(
             Explanation(

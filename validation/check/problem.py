@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from types import MappingProxyType
 
 import numpy as np
 
@@ -19,6 +20,7 @@ from validation.check.curve_orders import (
     shows_contact,
 )
 from validation.check.curves import Channel, Curves
+from validation.check.digits import coarse_step
 from validation.check.mesh_frequency import Frequency, mesh_frequency, nominal_cycles
 from validation.check.misfit import Misfit, misfit_of
 from validation.check.motion_curves import MotionCurves
@@ -169,11 +171,13 @@ class Problem:
         *,
         free_shift: bool = False,
         near_coarse: bool = True,
+        steps: Mapping[str, float] = MappingProxyType({}),
     ) -> Misfit:
         """Return the misfit of channels (by default those of the curves) and another motion of ours.
 
         ``free_shift`` says whether the shift is searched although the user states it, ``near_coarse`` whether
-        near the coarse one, which channels of tooth pairs need.
+        near the coarse one, which channels of tooth pairs need. ``steps`` are the steps [SI] in which samples
+        of channels are rounded, ours as theirs.
         """
         channels_of_theirs = self.theirs if theirs is None else theirs
         # Without a channel that shows a tooth pair from end to end the shift is that of the mesh cycle alone.
@@ -185,25 +189,37 @@ class Problem:
             near=self.coarse_shift if near_coarse and of_pairs else None,
             means=self.means,
         )
-        return misfit if self._fit is None else self._sampled_alike(misfit, motion, self._fit)
+        if not steps and not self._is_coarse:
+            return misfit
+        return self._sampled_alike(misfit, motion, self._fit, steps)
 
     @cached_property
-    def _fit(self) -> FloatArray | None:
-        """(2m+1, k) matrix from samples to mean, real and imaginary parts of the orders, by least squares.
+    def steps(self) -> Mapping[str, float]:
+        """Channel of the whole mesh -> step in which its values are written, where few digits show."""
+        steps = {one.name: coarse_step(one.values) for one in self.curves.channels if one.tooth_pair is None}
+        return {name: step for name, step in steps.items() if step > 0.0}
 
-        None: the curves have so many samples in a mesh cycle that high orders do not pass for low ones.
-        """
+    @cached_property
+    def _is_coarse(self) -> bool:
+        """Whether the curves have so few samples in a mesh cycle that high orders pass for low ones."""
         cycles = self.cycles[self.settled.used]
-        if cycles.size >= _COARSE * max(float(np.ptp(cycles)), 1e-300):
-            return None
+        return bool(cycles.size < _COARSE * max(float(np.ptp(cycles)), 1e-300))
+
+    @cached_property
+    def _fit(self) -> FloatArray:
+        """(2m+1, k) matrix from samples to mean, real and imaginary parts of the orders, by least squares."""
+        cycles = self.cycles[self.settled.used]
         angle = 2.0 * np.pi * np.multiply.outer(cycles, self.orders)
         waves = np.hstack([np.ones((cycles.size, 1)), np.cos(angle), -np.sin(angle)])
         return np.asarray(np.linalg.pinv(waves))
 
-    def _sampled_alike(self, misfit: Misfit, motion: MotionCurves, fit: FloatArray) -> Misfit:
+    def _sampled_alike(
+        self, misfit: Misfit, motion: MotionCurves, fit: FloatArray, steps: Mapping[str, float]
+    ) -> Misfit:
         """Misfit with our orders fitted to samples at the times of the curves, as theirs are.
 
-        In few samples a mesh cycle high orders pass for low ones, in our samples as in theirs.
+        In few samples a mesh cycle high orders pass for low ones, in our samples as in theirs. Rounded ones
+        have orders of their steps.
         """
         cycles = self.cycles[self.settled.used] + misfit.shift
         count = self.orders.size
@@ -211,7 +227,10 @@ class Problem:
         for row in misfit.channels:
             channel = row.channel.channel
             if channel.tooth_pair is None and row.ours.orders.size == count:
-                coefficients = fit @ motion.at(channel.quantity, cycles)
+                samples = motion.at(channel.quantity, cycles)
+                if step := steps.get(channel.name):
+                    samples = step * np.round(samples / step)
+                coefficients = fit @ samples
                 values = coefficients[1 : count + 1] + 1j * coefficients[count + 1 :]
                 ours = replace(row.ours, values=values, mean=float(coefficients[0]))
                 row = row._replace(ours=row.channel.recorded(ours))

@@ -16,12 +16,6 @@ from validation.check.misfit import ChannelMisfit
 from validation.check.problem import Problem
 from validation.signals.complex_orders import complex_orders
 
-#: Most different values of rounded samples, how often each is repeated at least in the mean, and how near
-#: to a whole number the multiples of the step are.
-_FEW_VALUES = 100
-_REPEATED = 4
-_WHOLE = 0.02
-
 
 class PeaksToPeak(NamedTuple):
     """Largest less smallest value of a channel, in the SI unit of the channel.
@@ -62,20 +56,6 @@ def samples_of(problem: Problem, channel: Channel) -> Samples:
     return Samples(cycles, theirs, ours)
 
 
-def step_of_values(values: FloatArray) -> float:
-    """Return the step in which values are written, as with few digits; 0 where no step shows.
-
-    A step shows where many samples have few different values, and every difference of two values is a
-    multiple of the smallest one.
-    """
-    different = np.unique(values)
-    if different.size < 3 or different.size > _FEW_VALUES or values.size < _REPEATED * different.size:
-        return 0.0
-    gaps = np.diff(different)
-    multiples = gaps / gaps.min()
-    return float(gaps.min()) if np.abs(multiples - np.round(multiples)).max() < _WHOLE else 0.0
-
-
 def peaks_to_peak(problem: Problem, row: ChannelMisfit) -> PeaksToPeak:
     """Return the peaks to peak of a channel in both models.
 
@@ -88,12 +68,12 @@ def peaks_to_peak(problem: Problem, row: ChannelMisfit) -> PeaksToPeak:
     return PeaksToPeak(float(np.ptp(samples.theirs)), float(np.ptp(samples.ours)))
 
 
-def difference_at_no_order(problem: Problem, row: ChannelMisfit) -> float:
+def difference_at_no_order(problem: Problem, row: ChannelMisfit, half: int | None = None) -> float:
     """Return the difference of both motions that lies at none of the compared orders, over the motion.
 
     The difference of the samples is fitted by the compared orders; what the fit leaves, less white noise,
     stands over the amplitude of the motion, as the misfit does. 0 for a channel of a tooth pair, whose orders
-    are those of its engagement.
+    are those of its engagement. ``half`` takes what is left of the first (0) or last (1) half of the samples.
     """
     channel = row.channel.channel
     if channel.tooth_pair is not None:
@@ -103,6 +83,8 @@ def difference_at_no_order(problem: Problem, row: ChannelMisfit) -> float:
     orders = row.channel.orders
     fitted = complex_orders(samples.cycles, difference, orders.orders, period=orders.period)
     rest = difference - fitted.mean - fitted.at(samples.cycles)
+    if half is not None:
+        rest = np.array_split(rest, 2)[half]
     # A wave of amplitude a has the mean square a^2/2.
     square = 2.0 * (float(np.mean(rest**2)) - white_noise(samples.theirs) ** 2)
     return float(np.sqrt(max(square, 0.0))) / row.scale

@@ -14,6 +14,7 @@ Sources: docs/how_to/check_your_model.md, "Explanations".
 from __future__ import annotations
 
 import itertools
+import math
 import time
 import warnings
 from collections.abc import Iterator, Sequence
@@ -30,23 +31,20 @@ from lumped.model.revolution_motion import Origin
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 from validation.check.curve_orders import BIN, ChannelOrders
-from validation.check.explanations.cause import Cause, Choice, Kind, Variant
+from validation.check.explanations.cause import Cause, Kind, Variant
 from validation.check.explanations.design_inputs import has_relief
 from validation.check.explanations.misreadings import causes_of_channels
 from validation.check.explanations.physics import Physics, motion_of
-from validation.check.explanations.reading import Reading, read
+from validation.check.explanations.reading import Reading, read, steps_of
 from validation.check.explanations.registry import EXPLANATIONS
 from validation.check.mesh_frequency import SAME
 from validation.check.misfit import ChannelMisfit, Misfit
 from validation.check.motion_curves import MotionCurves
 from validation.check.problem import Problem
+from validation.check.steps import Step
 
-#: A free parameter counts as this much worse than a fixed value with the same misfit.
-FREE_IS_WORSE = 1.15
 #: A change of the equations that takes something else away counts as this much worse, for each such thing.
 _SIDE_EFFECT = 1.25
-#: A course that many a mistake resembles, such as a slope, counts as this much worse than a mistake.
-_DESCRIBES = 1.15
 #: Misfits below this share of the limit count as alike.
 _ALIKE = 0.1
 #: Step of the derivatives by a free parameter, on the scale of the search.
@@ -71,59 +69,12 @@ _INTERVALS = 2
 _SEARCHED = 4
 _STALLED = 0.02
 _TRIALS = 14
-#: Free parameters nearer to neutral than this change nothing that is worth a sentence.
-_LEAST_CHANGE = 1e-3
 #: A change from cycle to cycle above this share of the motion is no noise but a motion that fades.
 _NOT_SETTLED = 0.01
 #: Readings behind which every other cause is tried: those that leave the smallest misfit.
 _HIDING_READINGS = 6
 #: Readings that can hide every other cause.
 HIDING = ("sign of a channel", "channels swapped", "time reversed")
-
-
-class Step(NamedTuple):
-    """A cause with its value.
-
-    Attributes
-    ----------
-    cause : the cause
-    choice : the fixed value; None: the value is free
-    coordinate : of the free parameter on the scale of the search
-    """
-
-    cause: Cause
-    choice: Choice | None
-    coordinate: float = 0.0
-
-    @property
-    def key(self) -> tuple[str, str]:
-        """Name of the cause, and which of its values or parts; the number of a free value is left out."""
-        return self.cause.name, self.cause.part if self.choice is None else str(self.choice.label)
-
-    @property
-    def label(self) -> float | str:
-        """The value that a user reads."""
-        if self.choice is not None:
-            return self.choice.label
-        return self.cause.shown(self.cause.value(self.coordinate))
-
-    @property
-    def changes(self) -> bool:
-        """Whether the value changes anything that is worth a sentence."""
-        return self.choice is not None or abs(self.coordinate) > _LEAST_CHANGE
-
-    @property
-    def sentence(self) -> str:
-        """The explanation in words."""
-        if self.choice is not None:
-            return f"Compatible with {self.choice.words}"
-        return f"Compatible with {self.cause.words.format(value=f'{float(self.label):.4g}')}"
-
-    def of(self, variant: Variant) -> Variant:
-        """Return the variant with this step."""
-        if self.choice is not None:
-            return self.choice.variant(variant)
-        return self.cause.change(variant, self.cause.value(self.coordinate))
 
 
 class Trial(NamedTuple):
@@ -176,8 +127,7 @@ class Path:
         Misfits below ``floor``, and below a tenth of the limit, count as alike.
         """
         alike = np.hypot(floor, _ALIKE * limit)
-        price = FREE_IS_WORSE**self.free * _SIDE_EFFECT**self.trial.side_effects
-        price *= _DESCRIBES ** sum(step.cause.describes for step in self.steps)
+        price = _SIDE_EFFECT**self.trial.side_effects * math.prod(step.price for step in self.steps)
         return float(np.hypot(self.trial.value, alike)) * price
 
 
@@ -220,7 +170,8 @@ class Search:
         if self.causes is None:
             self.causes = (*EXPLANATIONS.values(), *causes_of_channels(self.problem))
         self._tried_causes = self.causes
-        self._end = time.process_time() + self.budget
+        self._start = time.process_time()
+        self.run_until(1.0)
         start = Variant(self.problem.pair)
         self.motions[start.pair, start.physics] = self.problem.motion
 
@@ -235,7 +186,7 @@ class Search:
 
         Raises
         ------
-        BudgetSpentError : a motion is needed, and the budget is spent
+        BudgetSpentError : the trial is new, and the budget is spent
         """
         key = tuple((*step.key, step.coordinate) for step in steps)
         if key not in self._trials:
@@ -244,6 +195,8 @@ class Search:
 
     def _tried(self, steps: Sequence[Step]) -> Trial | None:
         """The trial of steps that were not tried before."""
+        if steps and self.spent:
+            raise BudgetSpentError
         try:
             variant = Variant(self.problem.pair)
             side_effects = 0
@@ -262,7 +215,11 @@ class Search:
                 continue
             try:
                 misfit = problem.misfit_with(
-                    motion, theirs, free_shift=reading.free_shift, near_coarse=not reading.places
+                    motion,
+                    theirs,
+                    free_shift=reading.free_shift,
+                    near_coarse=not reading.places,
+                    steps=steps_of(problem, reading),
                 )
             except SpurcheckError:
                 continue
@@ -275,8 +232,6 @@ class Search:
         """Motion of a variant, computed once."""
         key = pair, physics
         if key not in self.motions:
-            if self.spent:
-                raise BudgetSpentError
             self.runs += 1
             try:
                 with warnings.catch_warnings(), typed_errors():
@@ -341,6 +296,15 @@ class Search:
         """Whether the budget is spent."""
         enough = self.most_motions is not None and self.runs >= self.most_motions
         return enough or time.process_time() > self._end
+
+    def run_until(self, share: float) -> None:
+        """Set the end of the search to a share of the budget."""
+        self._end = self._start + share * self.budget
+
+    def conclude(self) -> None:
+        """Let the few trials that tell a path have a motion each, although the budget is spent."""
+        self._end = math.inf
+        self.most_motions = None
 
     def _with_one_step_more(self, path: Path) -> list[Path]:
         screened = self._screened(path)

@@ -179,6 +179,12 @@ def _other_shifts(pair: GearPair, none: Fields) -> Iterator[Choice]:
     for label, (words, moved) in changes.items():
         fields = {**none, "centre_distance": None} | {f"{gear}.profile_shift": x for gear, x in moved.items()}
         yield choice(label, words, constant(fields))
+    centre = to_stated(pair.geometry.centre_distance, "mm")
+    for gear, shift in shifts.items():
+        if shift > 0.0:  # without a negative shift the teeth would wedge
+            fields = {f"{gear}.profile_shift": 0.0, "centre_distance": centre, f"{gear}.tip_diameter": None}
+            text = f"the profile shift of the {gear} ignored, at the right centre distance"
+            yield choice(f"ignored: {gear}, centre kept", text, constant(fields))
 
 
 def _addendum_of_rack(problem: Problem, variant: Variant) -> list[Choice]:

@@ -405,13 +405,6 @@ def _reversed(problem: Problem, variant: Variant) -> list[Choice]:
     return [_reading("reversed", "time that runs backwards", lambda r: replace(r, reversed=turned))]
 
 
-def _not_settled(problem: Problem, variant: Variant) -> list[Choice]:
-    if variant.reading.decaying or problem.curves.role != "model":
-        return []
-    words = "a motion that has not settled: free vibrations still decay"
-    return [_reading("not settled", words, lambda reading: replace(reading, decaying=True))]
-
-
 def _step(problem: Problem, variant: Variant) -> list[Choice]:
     if problem.refined is None or not refined_curves_fit(problem.curves, problem.refined):
         return []
@@ -504,16 +497,6 @@ FILTER = Cause(
 )
 
 
-#: Values of few digits. They agree at every order, so that no step of a ladder finds them:
-#: ``validation.check.digits`` does.
-FEW_DIGITS = Cause(
-    name="few digits",
-    kind=Kind.READING,
-    meaning="a channel in few digits, such as angles in single precision: it agrees, and its samples scatter",
-    span="scatter above twice the limit",
-)
-
-
 def _causes() -> Iterator[Cause]:
     def read(
         name: str, meaning: str, span: str, choices: Callable[[Problem, Variant], Sequence[Choice]]
@@ -556,7 +539,6 @@ def _causes() -> Iterator[Cause]:
     )
     yield read("time reversed", "time that runs backwards", "reversed", _reversed)
     yield read("wrong phase", "another phase than the stated one", "searched", _phase)
-    yield read("not settled", "free vibrations that still decay", "not settled", _not_settled)
     yield read("step too long", "a step of integration that is too long", "half the step", _step)
     yield Cause(
         name="low-pass filter",
@@ -656,7 +638,6 @@ def _causes() -> Iterator[Cause]:
     )
     yield DELAY
     yield FILTER
-    yield FEW_DIGITS
 
 
 #: Causes that change the reading of the curves.

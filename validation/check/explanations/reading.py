@@ -60,6 +60,7 @@ class Reading:
     free_shift : whether the phase that the user states is ignored
     decaying : whether free vibrations that decay are taken out of the curves
     refined : whether the curves with half the step are taken
+    rounded : whether our samples are rounded in the steps of theirs
     """
 
     factors: ByChannel = ()
@@ -82,6 +83,7 @@ class Reading:
     free_shift: bool = False
     decaying: bool = False
     refined: bool = False
+    rounded: bool = False
 
     def with_factors(self, factors: Mapping[str, float]) -> Reading:
         """Return the reading with further factors, by channel."""
@@ -126,6 +128,14 @@ def quantities_by_place(problem: Problem, reading: Reading) -> dict[str, str]:
         row = place if reading.places == "leading pair first" else rows - 1 - place
         result[channel.name] = f"{channel.quantity} in place {row % PLACES}"
     return result
+
+
+def steps_of(problem: Problem, reading: Reading) -> dict[str, float]:
+    """Return the steps in which a reading rounds our samples, by channel, in the units of the reading."""
+    if not reading.rounded:
+        return {}
+    factors = dict(reading.factors)
+    return {name: step / abs(factors.get(name, 1.0)) for name, step in problem.steps.items()}
 
 
 #: The curves as they are.

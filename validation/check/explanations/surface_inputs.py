@@ -71,15 +71,24 @@ def _roughness(variant: Variant, value: float) -> Variant:
     )
 
 
-def _rz_for_ra(problem: Problem, variant: Variant) -> list[Choice]:
-    """The roughness Rz where Ra is wanted, or the reverse."""
+def _measures_of_roughness(problem: Problem, variant: Variant) -> list[Choice]:
+    """The roughness Rz where Ra is wanted, or the reverse; both gears for their mean."""
     if "pinion.roughness" not in fields_read(variant.pair):
         return []
 
     def change(factor: float) -> Callable[[Variant], Variant]:
         return lambda one: _roughness(one, factor)
 
+    first, second = (getattr(variant.pair, gear).roughness for gear in _GEARS)
+    root = math.hypot(first, second) / max(0.5 * (first + second), 1e-300)
+    composites = (
+        ("sum of both", "as the sum of those of both gears, in place of their mean", 2.0),
+        ("root of both", "as the root of the sum of the squares of both gears, in place of the mean", root),
+        ("half of both", "half of the mean of both gears", 0.5),
+    )
     return [
+        Choice(label, f"the roughness {words}", change(factor)) for label, words, factor in composites
+    ] + [
         Choice(f"{label} {ratio:g}", f"the roughness {words}, with Rz/Ra of {ratio:g}", change(factor))
         for ratio in _RZ_OVER_RA
         for label, words, factor in (
@@ -342,10 +351,10 @@ def _causes() -> Iterator[Cause]:
     yield free("viscosity", "the viscosity of the oil", _VISCOSITY, _viscosity, _reads("lubricant.viscosity"))
     yield free("roughness", "the roughness of both gears", _ROUGHNESS, _roughness, _reads("pinion.roughness"))
     yield fixed(
-        "Rz for Ra",
-        "the roughness Rz in place of Ra, or Ra divided as if it were Rz",
-        ", ".join(f"{ratio:g}" for ratio in _RZ_OVER_RA),
-        _rz_for_ra,
+        "measure of the roughness",
+        "the roughness Rz in place of Ra, Ra divided as if it were Rz, or a sum of both gears for their mean",
+        "Rz/Ra of 4, 5, 6, 7; sum, root of the squares, half of both",
+        _measures_of_roughness,
     )
     yield fixed(
         "unit of the torque",
