@@ -15,8 +15,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from lumped.schema.bodies import bodies_of
-from validation.check.curve_orders import drift, rate_of_drift, white_noise
-from validation.check.explanations.left_out import BRAKE, FEW_DIGITS, INTEGRATION, NOT_SETTLED
+from validation.check.curve_orders import drift, rate_of_drift, uniform_rate, white_noise
+from validation.check.explanations.left_out import BRAKE, EXPORT, FEW_DIGITS, INTEGRATION, NOT_SETTLED
 from validation.check.ladder import Explanation
 from validation.check.misfit import ChannelMisfit
 from validation.check.problem import Problem
@@ -27,6 +27,8 @@ from validation.files.formatting import percent
 _SCATTERS = 2.0
 #: A rotation drifts where it leaves its constant speed by this share of its vibration.
 _DRIFTS = 0.1
+#: A rotation whose speed is within this factor of the nominal speed has the uniform rotation in it.
+_UNIFORM = 2.0
 #: A change between the first block of cycles and the last one above this share is a transient.
 TRANSIENT = 0.1
 #: A motion at no mesh order that falls to this share from the first half to the last one decays.
@@ -46,11 +48,34 @@ def drifting(problem: Problem) -> list[ChannelMisfit]:
     ]
 
 
+def turning(problem: Problem) -> list[str]:
+    """Return the names of the rotations that have the uniform rotation of their gear in them."""
+    used = problem.settled.used
+    names = []
+    for row in problem.misfit.channels:
+        channel = row.channel.channel
+        if channel.kind.is_rotation:
+            gear = problem.pair.pinion if channel.kind.variable == "theta_p" else problem.pair.gear
+            rate = abs(uniform_rate(problem.cycles[used], channel.values[used])) * gear.teeth
+            if 1.0 / _UNIFORM < rate / (2.0 * math.pi) < _UNIFORM:
+                names.append(channel.name)
+    return names
+
+
+def without_means(problem: Problem) -> list[str]:
+    """Return the names of the channels whose means were removed."""
+    return [
+        row.channel.channel.name
+        for row in problem.misfit.channels
+        if problem.means and row.channel.channel.kind.has_mean and not row.compares_mean
+    ]
+
+
 def of_agreeing(problem: Problem, limit: float) -> tuple[Explanation, ...]:
     """Return the explanation of what the comparison leaves out of curves that agree; none: nothing.
 
-    One explanation: the first of a brake torque, a transient, few digits and errors of the integration. A
-    record of a rig has none of them.
+    One explanation: the first of a brake torque, a transient, few digits, errors of the integration and the
+    form of the export. A     record of a rig has none of them.
     """
     if problem.curves.role != "model":
         return ()
@@ -86,6 +111,17 @@ def _found(problem: Problem, limit: float) -> Iterator[Explanation]:
             f"motion at no mesh order is {percent(max(rests[name] for name in names))} of the motion, and "
             "does not decay",
         )
+    for names, label, words in (
+        (turning(problem), "whole angles", "whole angles, with the uniform rotation in them"),
+        (without_means(problem), "without means", "values without their means"),
+    ):
+        if names:
+            yield Explanation(
+                EXPORT.name,
+                label,
+                problem.misfit.value,
+                f"Compatible with {words}: {', '.join(names)}",
+            )
 
 
 def _fades(problem: Problem, names: list[str]) -> bool:

@@ -24,9 +24,8 @@ from lumped.model.periodic_system import Supports, with_supports
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import ProgressRequest
-from validation.check.agreeing import TRANSIENT, drifting, of_agreeing
-from validation.check.curve_orders import uniform_rate
-from validation.check.curves import Channel, Curves, Role, ValuesOverSpeed
+from validation.check.agreeing import TRANSIENT, drifting, of_agreeing, turning, without_means
+from validation.check.curves import Curves, Role, ValuesOverSpeed
 from validation.check.digits import coarse_step
 from validation.check.ladder import Explanation, Ladder, climb
 from validation.check.mesh_frequency import SAME
@@ -60,8 +59,6 @@ if TYPE_CHECKING:
 BUDGET = 40.0
 #: A change between the last two blocks of cycles above this share of the motion is no settled motion.
 _SETTLED = 0.01
-#: A rotation whose speed is within this factor of the nominal speed has the uniform rotation in it.
-_UNIFORM = 2.0
 #: A change of the motion with half the step above this share: the step is too long.
 _RESOLVED = 0.01
 #: Mesh frequency of the rung at low speed over the lowest natural frequency: the motion is nearly static.
@@ -476,15 +473,6 @@ def _remark_on_no_order(problem: Problem, limit: float) -> tuple[str, ...]:
     )
 
 
-def _turns(problem: Problem, channel: Channel) -> bool:
-    """Whether a rotation has the uniform rotation of its gear in it."""
-    used = problem.settled.used
-    pair = problem.pair
-    teeth = pair.pinion.teeth if channel.kind.variable == "theta_p" else pair.gear.teeth
-    rate = abs(uniform_rate(problem.cycles[used], channel.values[used])) * teeth / (2.0 * math.pi)
-    return 1.0 / _UNIFORM < rate < _UNIFORM
-
-
 def _remarks(problem: Problem) -> tuple[str, ...]:
     """Sentences on the curves: not settled, means that were removed."""
     remarks = []
@@ -500,10 +488,7 @@ def _remarks(problem: Problem) -> tuple[str, ...]:
             f"Compared are the last {problem.settled.compared * period} of {problem.settled.cycles * period} "
             "mesh cycles."
         )
-    rotations = [
-        row.channel.channel for row in problem.misfit.channels if row.channel.channel.kind.is_rotation
-    ]
-    whole = [one.name for one in rotations if _turns(problem, one)]
+    whole = turning(problem)
     if whole:
         remarks.append(f"Whole angles, compared without their uniform rotation: {', '.join(whole)}.")
     drifts = [row.channel.channel.name for row in drifting(problem)]
@@ -519,11 +504,7 @@ def _remarks(problem: Problem) -> tuple[str, ...]:
                 f"{channel.name} is written in steps of {quantity(step, channel.kind.unit, 3)}, "
                 f"{percent(step / float(np.ptp(channel.values)))} of its peak to peak. Write more digits."
             )
-    removed = [
-        row.channel.channel.name
-        for row in problem.misfit.channels
-        if problem.means and row.channel.channel.kind.has_mean and not row.compares_mean
-    ]
+    removed = without_means(problem)
     if removed:
         remarks.append(f"Without their means, which were removed: {', '.join(removed)}.")
     shown = {row.channel.channel.name for row in problem.misfit.channels}

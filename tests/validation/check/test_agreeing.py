@@ -103,3 +103,19 @@ def test_displacements_in_coarse_steps(pair):
     assert not result.agrees
     assert [step.name for step in result.explanations] == ["few digits"]
     assert result.explanations[0].misfit < 0.3 * result.misfit
+
+
+@pytest.mark.parametrize("form", ["whole angles", "without means"])
+def test_the_form_of_the_export_is_told_and_no_difference(pair, form):
+    """Angles with the uniform rotation, or displacements and forces less their means."""
+    time, _, values = records(pair, cycles=4)
+    g = pair.geometry
+    turned = values | {
+        "theta_p": values["theta_p"] + g.omega_pinion * time,
+        "theta_g": values["theta_g"] + g.omega_gear * time,
+    }
+    centred = {name: v - v.mean() for name, v in values.items() if not name.startswith("theta")}
+    curves = turned if form == "whole angles" else centred
+    names, result = explained(pair, {"time": time, **curves})
+    assert names == ["form of the export"]
+    assert result.explanations[0].factor == form

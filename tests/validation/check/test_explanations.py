@@ -355,7 +355,7 @@ SINGLE = (
     "sign of the deviations",
     "reading of the deviations",
     "places of tooth pairs",
-    *("few digits", "brake torque", "errors of the integration"),  # test_agreeing.py
+    *("few digits", "brake torque", "errors of the integration", "form of the export"),  # test_agreeing.py
 )
 
 

@@ -119,6 +119,12 @@ def _stiffness_formulas(problem: Problem, variant: Variant) -> list[Choice]:
         "0.8 forgotten": (1.25, "the factor 0.8 of ISO 6336-1 forgotten: tooth pairs 1.25 times too stiff"),
         "0.8 twice": (0.8, "the factor 0.8 of ISO 6336-1 counted twice: 0.8 times the stiffness"),
         "plane strain": (strain, "plane strain, E/(1 - nu^2), in the stiffness of the tooth pairs"),
+        "unit 1000": (1e3, "a stiffness of the tooth pairs 1000 times too large, by its unit"),
+        "unit 0.001": (1e-3, "a stiffness of the tooth pairs 1000 times too small, by its unit"),
+        "for a millimetre": (
+            1e-3 / common,
+            "a stiffness of the tooth pairs for a millimetre of face width, without the width",
+        ),
         **{
             f"width of the {gear}": (
                 getattr(pair, gear).face_width / common,
@@ -234,6 +240,12 @@ def _damper_formulas(problem: Problem, variant: Variant) -> list[Choice]:
             2.0 * math.pi,
             "the damping of the mesh by 2 zeta k/f with a frequency in Hz, not rad/s",
         ),
+        "logarithmic decrement": (
+            0.5 / math.pi,
+            "the damping ratio of the mesh read as a logarithmic decrement, and divided by 2 pi",
+        ),
+        "per cent": (0.01, "the damping ratio of the mesh read as per cent"),
+        "of per cent": (100.0, "per cent of the damping ratio of the mesh read as the ratio"),
         **{
             label: (
                 math.sqrt(mass / bodies.effective_mass),
@@ -341,14 +353,14 @@ def _fixed() -> Iterator[Cause]:
     yield fixed_values(
         "formula of the stiffness",
         "a mistake in the stiffness of a tooth pair that is a factor",
-        "c_gamma for c', factor 0.8, plane strain, face width of one gear",
+        "c_gamma for c', factor 0.8, plane strain, face width of one gear, a millimetre; 1000, 0.001",
         _stiffness_formulas,
     )
     yield fixed_values("mesh damping left out", "no damping of the mesh", "left out", _no_mesh_damping)
     yield fixed_values(
         "formula of the mesh damper",
         "a mistake in 2 zeta sqrt(k m_e) of the mesh damper",
-        "factors 0.5 and 2, Hz for rad/s, masses of translation, mass of one gear, their sum",
+        "factors 0.5 and 2, Hz for rad/s, decrement, per cent, mass of one gear, of translation, sum",
         _damper_formulas,
     )
 

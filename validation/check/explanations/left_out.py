@@ -70,6 +70,13 @@ INTEGRATION = Cause(
     meaning="an integration with coarse tolerances: it agrees at the mesh orders, and moves at others too",
     span="motion at no mesh order above the limit that does not decay",
 )
+#: Forms of an export that the reading takes off: they are no difference.
+EXPORT = Cause(
+    name="form of the export",
+    kind=Kind.READING,
+    meaning="curves that agree but for what the reading takes off: angles that turn, removed means",
+    span="whole angles; without means",
+)
 
 #: Causes of what the comparison leaves out.
-LEFT_OUT = (NOT_SETTLED, FEW_DIGITS, BRAKE, INTEGRATION)
+LEFT_OUT = (NOT_SETTLED, FEW_DIGITS, BRAKE, INTEGRATION, EXPORT)
