@@ -116,6 +116,25 @@ def test_a_mistake_comes_before_a_course_that_it_resembles(pair, motions):
     assert described.score(1e-4) > 1.1 * named.score(1e-4)
 
 
+def test_a_stiffness_comes_before_a_modulus_of_the_same_effect(pair, motions):
+    """Of equal misfits a factor on the stiffness stands before one on the modulus, and a round one first."""
+    motion = lumped_motion(pair)
+    start = Search(Problem.of(pair, sampled(motion, CHANNELS), motion), 600.0).start()
+
+    def score(name, factor):
+        return Path((Step(EXPLANATIONS[name], None, np.log(factor)),), start.trial).score(1e-4)
+
+    assert score("Young's modulus", 1.4) > score("mesh stiffness", 1.4)
+    assert score("mesh stiffness", 2.0) < 0.95 * score("mesh stiffness", 1.9)
+
+
+def test_a_slight_later_step_is_told_with_the_step_before(pair):
+    """A thousandth of a base pitch is no mistake, whatever the misfit says of it."""
+    cause = EXPLANATIONS["contact ratio"]
+    assert Step(cause, None, 1e-3).slight
+    assert not Step(cause, None, 0.05).slight
+
+
 def test_explanations_of_one_motion_are_named_together(pair, motions):
     """Masses and inertias times a factor are a density."""
     cause = EXPLANATIONS["density"]

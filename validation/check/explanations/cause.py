@@ -90,6 +90,7 @@ class Cause:
     shown : free parameter -> number that a user reads
     applies : whether the pair allows the free parameter
     describes : whether the cause is a course that many a mistake resembles, rather than a mistake
+    narrow : whether a simpler cause, such as a stiffness, often has the same effect: it is then named first
     part : which one of several causes of this name, such as a channel; empty: the only one
     """
 
@@ -105,6 +106,7 @@ class Cause:
     shown: Callable[[float], float] = field(default=lambda value: value)
     applies: Callable[[Problem, Variant], bool] = field(default=lambda problem, variant: True)
     describes: bool = False
+    narrow: bool = False
     part: str = ""
 
     @property

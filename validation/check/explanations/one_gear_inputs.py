@@ -6,6 +6,7 @@ Sources: docs/how_to/check_your_model.md, "Explanations".
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 
 from lumped.fields.units import to_stated
 from lumped.schema.fields_read import fields_read
@@ -69,35 +70,39 @@ def _of_both_tips(problem: Problem, variant: Variant) -> bool:
 
 
 def _causes() -> Iterator[Cause]:
-    yield free_factor("bores", "the bores of both gears", _FACTOR, _bore, _has_bores(GEARS))
-    yield free_factor(
+    bores = free_factor("bores", "the bores of both gears", _FACTOR, _bore, _has_bores(GEARS))
+    yield replace(bores, narrow=True)
+    modulus = free_factor(
         "Young's modulus",
         "Young's modulus of both gears",
         _MODULUS,
         _modulus,
         _reads("pinion.youngs_modulus"),
     )
+    yield replace(modulus, narrow=True)
     for gear in GEARS:
-        yield free_factor(
+        bore = free_factor(
             f"bore of the {gear}",
             f"the bore of the {gear}",
             _FACTOR,
             lambda pair, value, gear=gear: _bore(pair, value, (gear,)),  # type: ignore[misc]
             _has_bores((gear,)),
         )
+        yield replace(bore, narrow=True)
         yield free_factor(
             f"face width of the {gear}",
             f"the face width of the {gear}",
             _FACTOR,
             lambda pair, value, gear=gear: _width(pair, value, gear),  # type: ignore[misc]
         )
-        yield free_factor(
+        modulus = free_factor(
             f"Young's modulus of the {gear}",
             f"Young's modulus of the {gear}",
             _MODULUS,
             lambda pair, value, gear=gear: _modulus(pair, value, (gear,)),  # type: ignore[misc]
             _reads(f"{gear}.youngs_modulus"),
         )
+        yield replace(modulus, narrow=True)
         for key in ("amount", "length"):
             yield free_factor(
                 f"{key} of the tip relief of the {gear}",
