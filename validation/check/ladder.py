@@ -144,6 +144,8 @@ def climb(
     best = _exchanged(search, best, limit, floor)
     best = _pruned(search, best, limit, floor)
     complete = complete and not search.spent
+    if problem.misfit.value <= limit and all(step.slight for step in best.steps):
+        best = search.start()  # the place of a jump between two samples, no mistake
     search.conclude()
     steps = tuple(_explanations(search, best, floor))
     return Ladder(problem.misfit.value, steps, best.trial.motion, search.runs, complete=complete)
