@@ -16,7 +16,14 @@ import numpy as np
 
 from lumped.schema.bodies import bodies_of
 from validation.check.curve_orders import drift, rate_of_drift, uniform_rate, white_noise
-from validation.check.explanations.left_out import BRAKE, EXPORT, FEW_DIGITS, INTEGRATION, NOT_SETTLED
+from validation.check.explanations.left_out import (
+    BRAKE,
+    CHANGES,
+    EXPORT,
+    FEW_DIGITS,
+    INTEGRATION,
+    NOT_SETTLED,
+)
 from validation.check.ladder import Explanation
 from validation.check.misfit import ChannelMisfit
 from validation.check.problem import Problem
@@ -88,7 +95,9 @@ def _found(problem: Problem, limit: float) -> Iterator[Explanation]:
     rests = {
         row.channel.channel.name: difference_at_no_order(problem, row) for row in problem.misfit.channels
     }
-    names = [name for name, rest in rests.items() if rest > limit]
+    # Jumps between samples are at orders above those that are compared, and repeat with every cycle.
+    changes = problem.settled.change > CHANGES
+    names = [name for name, rest in rests.items() if changes and rest > limit]
     decays = bool(names) and _fades(problem, names)
     transient = problem.settled.transient
     calms = problem.settled.change < _DECAYS * transient

@@ -27,6 +27,7 @@ from lumped.typing import ProgressRequest
 from validation.check.agreeing import TRANSIENT, drifting, of_agreeing, turning, without_means
 from validation.check.curves import Curves, Role, ValuesOverSpeed
 from validation.check.digits import coarse_step
+from validation.check.explanations.left_out import CHANGES
 from validation.check.ladder import Explanation, Ladder, climb
 from validation.check.mesh_frequency import SAME
 from validation.check.misfit import LIMIT, Misfit
@@ -57,8 +58,6 @@ if TYPE_CHECKING:
 
 #: Default processor time of the search for explanations [s].
 BUDGET = 40.0
-#: A change between the last two blocks of cycles above this share of the motion is no settled motion.
-_SETTLED = 0.01
 #: A change of the motion with half the step above this share: the step is too long.
 _RESOLVED = 0.01
 #: Mesh frequency of the rung at low speed over the lowest natural frequency: the motion is nearly static.
@@ -478,7 +477,7 @@ def _remarks(problem: Problem) -> tuple[str, ...]:
     remarks = []
     period = problem.motion.mesh_cycles
     change = problem.settled.change
-    if change > _SETTLED:
+    if change > CHANGES:
         remarks.append(
             f"The motion has not settled: the last cycles change by {percent(change)}. Run it longer."
         )

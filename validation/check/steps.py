@@ -15,6 +15,8 @@ from validation.check.explanations.cause import Cause, Choice, Kind, Variant
 FREE_IS_WORSE = 1.15
 #: A course that many a mistake resembles, such as a slope, counts as this much worse than a mistake.
 _DESCRIBES = 1.15
+#: A mistake that the curves alone show counts as this much better.
+_SHOWN = 0.6
 #: A cause with a simpler one of about the same effect counts as this much worse than that.
 _NARROW = 1.04
 #: A free factor on an input that turns out as a usual one; how near its logarithm must be to that of one.
@@ -58,7 +60,7 @@ class Step(NamedTuple):
         """Factor on the misfit of a step that is less likely than a fixed value with the same misfit."""
         price = _DESCRIBES if self.cause.describes else _NARROW if self.cause.narrow else 1.0
         if self.choice is not None:
-            return price * (_DESCRIBES if self.choice.vague else 1.0)
+            return price * (_DESCRIBES if self.choice.vague else _SHOWN if self.choice.shown else 1.0)
         return price * (_ROUND_IS_WORSE if self.is_round else FREE_IS_WORSE)
 
     @property

@@ -63,12 +63,14 @@ class Choice(NamedTuple):
     variant : the variant with this value
     vague : whether many a cause has about this effect: the value is then accepted only where it brings the
         misfit below the limit
+    shown : whether the curves alone, without our motion, show that the value is likely
     """
 
     label: float | str
     words: str
     variant: Callable[[Variant], Variant]
     vague: bool = False
+    shown: bool = False
 
 
 @dataclass(frozen=True)

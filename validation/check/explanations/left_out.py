@@ -14,6 +14,8 @@ from typing import Any
 from validation.check.explanations.cause import Cause, Choice, Kind, Variant
 from validation.check.problem import Problem
 
+#: A change of the last cycles above this share of the motion is seen in the curves alone.
+CHANGES = 0.01
 #: A change of the last cycles up to this share of the motion is a motion that repeats.
 _REPEATS = 1e-3
 
@@ -29,7 +31,8 @@ def _not_settled(problem: Problem, variant: Variant) -> list[Choice]:
     if variant.reading.decaying or problem.curves.role != "model" or settled:
         return []
     words = "a motion that has not settled: free vibrations still decay"
-    return [_reading("not settled", words, decaying=True)]
+    shown = problem.settled.change > CHANGES
+    return [_reading("not settled", words, decaying=True)._replace(shown=shown)]
 
 
 def _few_digits(problem: Problem, variant: Variant) -> list[Choice]:
