@@ -93,9 +93,10 @@ def _found(problem: Problem, limit: float) -> Iterator[Explanation]:
     """All explanations of what the comparison leaves out."""
     yield from _brake(problem)
     rests = {
-        row.channel.channel.name: difference_at_no_order(problem, row) for row in problem.misfit.channels
+        row.channel.channel.name: difference_at_no_order(problem, row, typical=True)
+        for row in problem.misfit.channels
     }
-    # Jumps between samples are at orders above those that are compared, and repeat with every cycle.
+    # Jumps between samples are at orders above those that are compared: few samples, alike in every cycle.
     changes = problem.settled.change > CHANGES
     names = [name for name, rest in rests.items() if changes and rest > limit]
     decays = bool(names) and _fades(problem, names)
@@ -138,7 +139,7 @@ def _fades(problem: Problem, names: list[str]) -> bool:
     shares = []
     for row in problem.misfit.channels:
         if row.channel.channel.name in names:
-            first, last = (difference_at_no_order(problem, row, half) for half in (0, 1))
+            first, last = (difference_at_no_order(problem, row, half, typical=True) for half in (0, 1))
             shares.append(last / max(first, 1e-300))
     return float(np.median(shares)) < _DECAYS
 

@@ -68,12 +68,15 @@ def peaks_to_peak(problem: Problem, row: ChannelMisfit) -> PeaksToPeak:
     return PeaksToPeak(float(np.ptp(samples.theirs)), float(np.ptp(samples.ours)))
 
 
-def difference_at_no_order(problem: Problem, row: ChannelMisfit, half: int | None = None) -> float:
+def difference_at_no_order(
+    problem: Problem, row: ChannelMisfit, half: int | None = None, *, typical: bool = False
+) -> float:
     """Return the difference of both motions that lies at none of the compared orders, over the motion.
 
     The difference of the samples is fitted by the compared orders; what the fit leaves, less white noise,
     stands over the amplitude of the motion, as the misfit does. 0 for a channel of a tooth pair, whose orders
     are those of its engagement. ``half`` takes what is left of the first (0) or last (1) half of the samples.
+    ``typical`` takes the median of the squares, not their mean: jumps at few samples then count for nothing.
     """
     channel = row.channel.channel
     if channel.tooth_pair is not None:
@@ -85,6 +88,7 @@ def difference_at_no_order(problem: Problem, row: ChannelMisfit, half: int | Non
     rest = difference - fitted.mean - fitted.at(samples.cycles)
     if half is not None:
         rest = np.array_split(rest, 2)[half]
+    average = np.median if typical else np.mean
     # A wave of amplitude a has the mean square a^2/2.
-    square = 2.0 * (float(np.mean(rest**2)) - white_noise(samples.theirs) ** 2)
+    square = 2.0 * (float(average(rest**2)) - white_noise(samples.theirs) ** 2)
     return float(np.sqrt(max(square, 0.0))) / row.scale

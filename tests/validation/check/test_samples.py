@@ -108,3 +108,14 @@ def test_noise_and_motions_that_agree_say_nothing(pair):
     for noise in (0.0, 0.01, 0.04):
         result = check(pair, sampled(pair, QUANTITIES, noise=noise, cycles=16))
         assert not [one for one in result.remarks if "none of the compared mesh orders" in one]
+
+
+def test_jumps_at_few_samples_are_no_typical_difference(pair):
+    """Every fortieth sample is wrong by half the peak to peak: much in the mean, little elsewhere."""
+
+    def jumps(name, values, time):
+        return values + 0.5 * np.ptp(values) * (np.arange(values.size) % 40 == 0)
+
+    problem = check(pair, sampled(pair, ("dte",), change=jumps, cycles=16), explain=False).problem
+    (row,) = problem.misfit.channels
+    assert difference_at_no_order(problem, row, typical=True) < 0.2 * difference_at_no_order(problem, row)
