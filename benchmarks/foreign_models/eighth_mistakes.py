@@ -151,7 +151,7 @@ def half_each(model: Model) -> Model:
         for step in range(-reach, reach + 1):
             other = xi + step * line.base_pitch
             on = in_contact(line, other)
-            total += np.where(on, law(other), 0.0)
+            total += np.where(on, law(np.clip(other, line.start, line.end)), 0.0)
             count += on
         return total / np.maximum(count, 1.0)
 

@@ -122,8 +122,8 @@ class Effect(NamedTuple):
     """Of a channel: complex mesh orders from 1 up over those of the sound curve; mean over its size.
 
     The size is the larger of the sound curve's mean and swing from peak to peak. Both curves are expanded in
-    orders of the sound model's mesh cycle, after the shift in time that fits all channels best, where more than
-    100 % counts as 100 %.
+    orders of the sound model's mesh cycle, after the shift in time that fits all channels best, where more
+    than 100 % counts as 100 %.
     """
 
     wave: float
