@@ -103,7 +103,7 @@ def _wrong() -> tuple[tuple[str, str, Made], ...]:
         (
             "inertias_exchanged",
             "the moments of inertia of pinion and gear are exchanged",
-            Made("robot", ALL, LSODA, model=m.inertias_exchanged),
+            Made("robot", ALL, replace(RK4, substeps=16, phase=0.61), model=m.inertias_exchanged),
         ),
         (
             "inertias_solid",
