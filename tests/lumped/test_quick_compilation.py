@@ -68,12 +68,16 @@ def test_the_code_is_that_of_numba(monkeypatch: pytest.MonkeyPatch, tmp_path: Pa
 
 def test_variables_are_listed_in_the_order_of_numba() -> None:
     statements = [one for block in run_frontend(_all_kinds).blocks.values() for one in block.body]
+    nested = ir.Stmt()
+    nested.parts = {"one": statements[0].target, "others": [(statements[1].target, "text"), {"": None}]}
+    statements.append(nested)
     expressions = [one.value for one in statements if isinstance(getattr(one, "value", None), ir.Expr)]
     listed = [one.list_vars() for one in statements + expressions]
     with _less_work():
         assert [one.list_vars() for one in statements + expressions] == listed
     assert {one.op for one in expressions} >= {"call", "binop", "getitem", "build_tuple", "getattr"}
     assert max(map(len, listed)) >= 3
+    assert len(nested.list_vars()) == 2
 
 
 def test_operations_of_other_types_have_other_types() -> None:
