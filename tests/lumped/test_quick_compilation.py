@@ -150,13 +150,22 @@ def test_numba_and_the_collector_are_as_before_also_after_an_error(collects: boo
 
 
 def test_no_garbage_is_collected_and_no_lock_is_told_while_a_function_is_compiled() -> None:
-    compiling: list[bool] = []
+    @called
+    def inner(x: float) -> float:
+        return x * x + abs(x) / 3.0
+
+    def outer(x: float) -> float:
+        return inner(x) + inner(2.0 * x)
+
+    compiling: list[str] = []
+    inside: list[str] = []
     collections: list[str] = []
     locks: list[Any] = []
 
     class Compilations(event.Listener):  # type: ignore[misc]  # numba ships no types
         def on_start(self, one: Any) -> None:
-            compiling.append(True)
+            compiling.append(one.data["dispatcher"].py_func.__name__)
+            inside.extend(compiling[1:])
 
         def on_end(self, one: Any) -> None:
             compiling.pop()
@@ -181,10 +190,11 @@ def test_no_garbage_is_collected_and_no_lock_is_told_while_a_function_is_compile
             event.install_listener("numba:compile", Compilations()),
             event.install_listener("numba:llvm_lock", Locks()),
         ):
-            compiled(_all_kinds)(np.linspace(0.0, 1.0, 5), 4, (True, 0.25))
+            compiled(outer)(1.5)
     finally:
         gc.callbacks.remove(note)
         gc.set_threshold(*thresholds)
     assert not compiling
+    assert "inner" in inside
     assert not collections
     assert not locks
