@@ -15,6 +15,7 @@ import numpy as np
 
 import lumped
 from benchmarks.foreign_models import eighth_mistakes as mistakes
+from benchmarks.foreign_models.cases import Case as Record
 from benchmarks.foreign_models.differences import orders_of
 from benchmarks.foreign_models.drawing import drawing_of
 from benchmarks.foreign_models.eighth_pairs import PAIRS
@@ -287,6 +288,13 @@ EIGHTH_WRONG = tuple(
     for number, (name, truth, made) in enumerate(_wrong(), 1)
 )
 EIGHTH_SOUND = tuple(Case(f"eighth_{name}", truth, made, sound=True) for name, truth, made in _sound())
+
+
+def judging(kind: str | None = None) -> list[Record]:
+    """Return the cases of the eighth set, of a kind ("sound" or "wrong") or all."""
+    wrong = [Record(one.name, "wrong", (one.truth,), one.pair, one.curves) for one in EIGHTH_WRONG]
+    sound = [Record(one.name, "sound", (), one.pair, one.curves) for one in EIGHTH_SOUND]
+    return [record for record in (*sound, *wrong) if kind in (None, record.kind)]
 
 
 def agreement() -> None:
