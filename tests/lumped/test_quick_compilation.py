@@ -42,7 +42,8 @@ def _all_kinds(values: FloatArray, n: int, flags: tuple[bool, float]) -> float:
         box[i, 0] = values[-1] if flags[0] and i % 2 == 1 else max(flags[1], -values[i])
         total += box[i, 0] // 3 + box[i, 1] / 3
     box[:, 0] = 2.0 * box[:, 1] + 1.0
-    return total + box[:, 0].sum()
+    total += box[:, 0].sum()
+    return total
 
 
 @pytest.fixture(autouse=True)
