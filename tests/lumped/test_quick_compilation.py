@@ -43,7 +43,7 @@ def _all_kinds(values: FloatArray, n: int, flags: tuple[bool, float]) -> float:
         total += box[i, 0] // 3 + box[i, 1] / 3
     box[:, 0] = 2.0 * box[:, 1] + 1.0
     total += box[:, 0].sum()
-    return total
+    return float(total)
 
 
 @pytest.fixture(autouse=True)
