@@ -100,6 +100,13 @@ def test_an_import_loads_nothing_heavy_and_takes_a_second_and_a_half_at_most(pac
     assert seconds < 1.5
 
 
+def test_a_report_without_a_record_loads_nothing_that_reads_and_judges_records():
+    """It has 66 modules, an eighth of the time that both processes of a report take to import."""
+    _, modules = loaded("import validation.reporting.build, validation.reporting.chapters", 10.0)
+    assert "validation.reporting.chapters.record" in modules
+    assert not [name for name in modules if name.startswith("validation.check")]
+
+
 ROOT = Path(__file__).parents[2]
 PACKAGES = ("lumped", "multibody", "floquet", "validation")
 
