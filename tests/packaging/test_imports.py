@@ -105,6 +105,7 @@ def test_a_report_without_a_record_loads_nothing_that_reads_and_judges_records()
     _, modules = loaded("import validation.reporting.build, validation.reporting.chapters", 10.0)
     assert "validation.reporting.chapters.record" in modules
     assert not [name for name in modules if name.startswith("validation.check")]
+    assert "scipy.stats" not in modules  # a third of a second, before the first result
 
 
 ROOT = Path(__file__).parents[2]
