@@ -1,6 +1,6 @@
 """What the comparison says of the wrong models: the truth beside the ladder of explanations.
 
-    python -m benchmarks.foreign_models.ladder first|second|third|fourth|fifth|sixth|seventh [words]
+    python -m benchmarks.foreign_models.ladder first|second|third|fourth|fifth|sixth|seventh|eighth [words]
 
 A reader decides whether the first explanation is the truth in other words: the registry has no names of the
 mistakes, and the mistakes have no names of the registry.
@@ -15,6 +15,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from benchmarks.foreign_models.cases import Case
 from benchmarks.foreign_models.cases import cases as first_set
+from benchmarks.foreign_models.eighth import judging as eighth_set
 from benchmarks.foreign_models.fifth import judging as fifth_set
 from benchmarks.foreign_models.fourth import judging as fourth_set
 from benchmarks.foreign_models.second import held_back as second_set
@@ -31,6 +32,7 @@ SETS: Mapping[str, Callable[[str], Sequence[Case]]] = {
     "fifth": fifth_set,
     "sixth": sixth_set,
     "seventh": seventh_set,
+    "eighth": eighth_set,
 }
 
 

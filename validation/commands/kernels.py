@@ -17,9 +17,6 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from lumped.typing import Progress
 
-#: Functions that a report compiles, with nested functions (counted on an empty cache, numba 0.63).
-_FUNCTIONS = 150
-
 
 @contextmanager
 def counted(bar: Progress) -> Iterator[Progress]:
@@ -84,8 +81,9 @@ class _Listener:
     def notify(self, event: Any) -> None:
         """Take one event of numba: the start or the end of a compilation."""
         self._done += event.is_end
-        share = f"{self._done} of about {_FUNCTIONS} functions"
-        self._bar(self._fraction, f"compiling, once for this machine, for a minute: {share}")
+        # Not "of": how many a pair needs, and which the second process compiles, is known at the end.
+        done = f"{self._done} functions"
+        self._bar(self._fraction, f"compiling, once for this machine, for a minute: {done}")
 
 
 def main() -> None:

@@ -11,13 +11,13 @@ import __future__
 
 import contextlib
 import dataclasses
+import functools
 import importlib
 import inspect
 import sys
 import textwrap
 import types
 from collections.abc import Callable, Iterator
-from functools import cached_property
 from typing import Any
 
 import numba
@@ -122,7 +122,7 @@ def _rewritten(fault: Fault, owner: Any, name: str, original: Any) -> Any:
     result = made[name]
     if isinstance(original, Dispatcher):
         return _compiled(result, original)
-    if isinstance(result, cached_property):
+    if isinstance(result, functools.cached_property):
         result.__set_name__(owner, name)
     return result
 
@@ -163,7 +163,10 @@ def _named(function: types.FunctionType) -> Iterator[Any]:
 
 
 def _exchange(original: Any, changed: Any, owner: Any) -> list[Callable[[], None]]:
-    """Replace the original by the changed object everywhere. Returns functions that undo each replacement."""
+    """Replace the original by the changed object everywhere. Returns functions that undo each replacement.
+
+    A package holds its public functions inside one that types errors, see ``lumped.public_names``.
+    """
     undo: list[Callable[[], None]] = []
     holders: list[Any] = [*_modules(), owner]
     records = {
@@ -174,11 +177,18 @@ def _exchange(original: Any, changed: Any, owner: Any) -> list[Callable[[], None
     }
     for holder in {id(one): one for one in [*holders, *records.values()]}.values():
         for name, value in list(vars(holder).items()):
-            if value is original:
+            if value is original or _wrapped(value) is original:
                 set_attribute = _frozen if id(holder) in records else setattr
                 set_attribute(holder, name, changed)
-                undo.append(lambda h=holder, n=name, p=set_attribute: p(h, n, original))  # type: ignore[misc]
+                undo.append(functools.partial(set_attribute, holder, name, value))
     return undo
+
+
+def _wrapped(value: Any) -> Any:
+    """The function inside a public name of a package, or None."""
+    return (
+        value.__wrapped__ if isinstance(value, types.FunctionType) and hasattr(value, "__wrapped__") else None
+    )
 
 
 def _frozen(record: Any, name: str, value: Any) -> None:

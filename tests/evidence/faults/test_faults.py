@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import floquet
 import validation
 from lumped.errors import LawRangeWarning
 from tests.evidence.faults.fault import FAULTS, GROUPS, REPORT_FAULTS, Fault
@@ -87,6 +88,17 @@ def test_a_fault_acts_wherever_its_function_is_held(sound):
         with applied(FAULTS[key]):
             both = zip(sound, pairs(), strict=True)
             assert any(change(old, quantities(pair))[0] > 0.01 for old, pair in both), key
+
+
+def test_a_fault_acts_in_the_public_name_of_a_package():
+    """The package holds its functions inside others, which type errors; evidence calls these."""
+    pair = next(iter(pairs()))
+    public = floquet.gear_pair_system
+    period = public(pair, "mesh").period
+    with applied(FAULTS["floquet_period"]):
+        assert floquet.gear_pair_system(pair, "mesh").period == 2.0 * period
+    assert floquet.gear_pair_system is public
+    assert public(pair, "mesh").period == period
 
 
 def test_a_fault_whose_line_is_gone_is_told():

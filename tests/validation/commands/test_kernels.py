@@ -51,7 +51,7 @@ def test_what_is_compiled_is_told_and_the_fraction_stays() -> None:
     for start in (True, True, False, False):
         listener.notify(SimpleNamespace(is_start=start, is_end=not start))
     assert {fraction for fraction, _ in announced} == {0.3}
-    assert announced[-1][1] == "compiling, once for this machine, for a minute: 2 of about 150 functions"
+    assert announced[-1][1] == "compiling, once for this machine, for a minute: 2 functions"
 
 
 def test_the_second_process_compiles_what_runs_of_any_pair_take() -> None:
