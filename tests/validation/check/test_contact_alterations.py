@@ -289,7 +289,7 @@ def test_a_table_that_a_spline_joins(pair):
     """At the entries the mesh has its own stiffness; the curve is smooth where the mesh jumps."""
     g = pair.geometry
     true = altered_elements(pair, Physics()).stiffness
-    law = altered_elements(pair, Physics(table=12, spline=True)).stiffness
+    law = altered_elements(pair, Physics(table=12, table_join="spline")).stiffness
     entries = g.L_XA + (np.arange(12) + 1e-5) / 12 * g.base_pitch
     assert total(pair, law, entries) == pytest.approx(total(pair, true, entries), rel=1e-3)
     near = g.L_XA + np.array([-1e-4, 1e-4]) * g.base_pitch + g.base_pitch

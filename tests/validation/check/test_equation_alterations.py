@@ -218,11 +218,14 @@ def test_the_stiffness_of_a_table(pair):
     entries = (np.arange(9) + 1e-5) / 9
     values = total(true, entries)
     lines = altered_elements(pair, Physics(table=9)).stiffness
-    steps = altered_elements(pair, Physics(table=-9)).stiffness
+    steps = altered_elements(pair, Physics(table=9, table_join="steps")).stiffness
     assert total(lines, entries) == pytest.approx(values, rel=1e-3)
     half = entries + 0.5 / 9
     assert total(lines, half) == pytest.approx(0.5 * (values + np.roll(values, -1)), rel=1e-3)
     assert total(steps, half) == pytest.approx(values, rel=1e-3)
+    middles = altered_elements(pair, Physics(table=9, table_join="middles")).stiffness
+    for place in (0.1 / 9, 0.9 / 9):  # the value of the middle, before and behind it
+        assert total(middles, entries + place) == pytest.approx(total(true, half), rel=1e-3)
 
 
 def test_a_path_of_contact_with_other_ends(pair):

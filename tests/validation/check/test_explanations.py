@@ -158,7 +158,7 @@ FIXED = {
     "zones of contact": ("unlike", "zones exchanged"),
     "line of action": ("shifted", "of the rack"),
     "parts of the compliance": ("energy", "no foundation"),
-    "table of the stiffness": ("unlike", 8),
+    "table of the stiffness": ("unlike", "8, lines"),
     "peak at the pitch point": ("unlike", None),
     "addendum of the rack": ("unlike", 1.0),
     "formula of the stiffness": ("unlike", "0.8 forgotten"),
@@ -200,7 +200,7 @@ FURTHER = (
     ("lever arms of friction", "base radii"),
     ("zones of contact", "circular pitch, about the middle"),
     ("zones of contact", "halves, about the middle"),
-    ("table of the stiffness", -12),
+    ("table of the stiffness", "12, steps"),
     ("supports", "rigid gear"),
     ("supports", "rigid across"),
     ("damper law", "constant for each pair"),
@@ -222,6 +222,8 @@ FURTHER = (
     ("number of pairs that carry", "oldest 2"),
     ("number of pairs that carry", "last one held"),
     ("table of the stiffness", "12, spline"),
+    ("table of the stiffness", "12, middles"),
+    ("profile shifts", "times the module, centre kept"),
     ("friction over the path", "coefficient of the newest pair"),
     ("friction over the path", "middle of the line of action"),
     ("static error as an excitation", "stiffness as a force"),
@@ -589,6 +591,30 @@ def test_channel_that_holds_another_quantity(name, words, share, pairs, shared):
     cause = "radius of a channel" if share else "another quantity"
     ladder = climbed(problem, shared, "unlike", cause)
     assert [step.name for step in ladder.steps] == [cause]
+    assert words in ladder.steps[0].sentence
+
+
+@pytest.mark.parametrize(
+    ("words", "names", "factor"),
+    [
+        ("all lengths", ("dte", "x_p", "y_g"), 1e3),
+        ("all forces", ("mesh_force", "bearing_force_x_p"), 1e-3),
+        ("a length on the tip circle of the pinion", ("dte",), None),
+    ],
+)
+def test_a_unit_of_all_channels_that_have_it(words, names, factor, pairs, shared):
+    """Millimetres and kilonewtons are of all lengths and forces; r_a/r_b of the pinion, by hand."""
+    pair = pairs["unlike"]
+    g = pair.geometry
+    if factor is None:
+        factor = g.tip_radius_pinion / g.base_radius_pinion
+    motion = lumped_motion(pair)
+    curves = sampled(motion, ("dte", "theta_p", "x_p", "y_g", "mesh_force", "bearing_force_x_p"))
+    problem = Problem.of(pair, changed(curves, names, lambda v: factor * v), motion)
+    ladder = climbed(
+        problem, shared, "unlike", "radius of a channel" if len(names) == 1 else "unit of a channel"
+    )
+    assert len(ladder.steps) == 1
     assert words in ladder.steps[0].sentence
 
 

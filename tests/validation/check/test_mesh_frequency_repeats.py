@@ -30,6 +30,28 @@ def test_speed_of_the_gear(pair):
     assert "gear" in frequency.cause
 
 
+def test_half_of_the_speed(pair):
+    """pi/60 for pi/30: the mesh frequency is half, and all orders are those of that speed."""
+    speed = pair.operating.pinion_speed * 30.0 / np.pi
+    slower = pair.with_({"operating.pinion_speed": 0.5 * speed})
+    frequency = mesh_frequency(curves_of(slower), pair)
+    assert frequency.factor == pytest.approx(0.5, rel=1e-3)
+    assert "pi/60" in frequency.cause
+
+
+def test_a_motion_over_two_mesh_cycles_is_at_the_right_speed(pair):
+    """A subharmonic of half of the size of the motion repeats in two cycles, as half of the speed would."""
+    curves = curves_of(pair)
+    cycles = curves.places / pair.geometry.mesh_period
+
+    def with_subharmonic(channel):
+        wave = 0.5 * np.std(channel.values) * np.sqrt(2.0) * np.cos(np.pi * cycles)
+        return replace(channel, values=channel.values + wave)
+
+    doubled = replace(curves, channels=tuple(map(with_subharmonic, curves.channels)))
+    assert mesh_frequency(doubled, pair).factor == pytest.approx(1.0, abs=1e-3)
+
+
 def test_sampling_rate_misstated(pair):
     curves = curves_of(pair)
     frequency = mesh_frequency(replace(curves, places=curves.places * 48.0 / 44.1), pair)

@@ -49,6 +49,10 @@ Compliance = Literal[
 ]
 
 
+#: Straight lines or a cubic spline between entries; or steps with the value at their start or middle.
+TableJoin = Literal["lines", "spline", "steps", "middles"]
+
+
 class _Factors(NamedTuple):
     """Factors on parts of the compliance; a part of both teeth is left out, halved or doubled."""
 
@@ -167,28 +171,28 @@ def _longer(pair: GearPair, friction: PathFunction, interval: tuple[float, float
     return PathFunction.fit(further, breaks, marks, tolerance=TOLERANCE * max(size, 1e-300))
 
 
-def with_table(pair: GearPair, elements: MeshElements, entries: int, *, spline: bool) -> MeshElements:
+def with_table(pair: GearPair, elements: MeshElements, entries: int, join: TableJoin) -> MeshElements:
     """Return element laws whose stiffness of the whole mesh comes from a table over the mesh cycle.
 
     Entries are at equal steps from A on; between them are straight lines, or a cubic spline that repeats with
-    the cycle. Negative: so many steps, each with the value of its entry.
+    the cycle; or each holds over its step, with the value at the start or in the middle of the step.
     """
     stiffness = elements.stiffness
     low, _ = stiffness.interval
     pitch = pair.geometry.base_pitch
     total = total_of_pairs(pair, stiffness)
-    count = abs(entries)
-    phases = np.arange(count + 1) / count
+    phases = np.arange(entries + 1) / entries
     # Just behind the entry: at A the new pair carries load.
-    values = total(low + (phases % 1.0) * pitch + 1e-6 * pitch)
-    curve = CubicSpline(phases, values, bc_type="periodic") if spline else None
+    behind = 0.5 / entries if join == "middles" else 1e-6
+    values = total(low + (phases % 1.0 + behind) * pitch)
+    curve = CubicSpline(phases, values, bc_type="periodic") if join == "spline" else None
 
     def from_table(xi: FloatArray) -> FloatArray:
         phase = np.mod((xi - low) / pitch, 1.0)
         if curve is not None:
             return np.asarray(np.maximum(curve(phase), _LEAST_STIFFNESS * values.max()))
-        if entries < 0:
-            return np.asarray(values[np.minimum((phase * count).astype(int), count - 1)])
+        if join in ("steps", "middles"):
+            return np.asarray(values[np.minimum((phase * entries).astype(int), entries - 1)])
         return np.asarray(np.interp(phase, phases, values))
 
     return _of_whole_mesh(pair, elements, from_table, low + phases[:-1] * pitch)

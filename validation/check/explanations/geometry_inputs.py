@@ -5,7 +5,7 @@ Sources: docs/how_to/check_your_model.md, "Explanations".
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from lumped.fields.units import to_stated
@@ -179,12 +179,32 @@ def _other_shifts(pair: GearPair, none: Fields) -> Iterator[Choice]:
     for label, (words, moved) in changes.items():
         fields = {**none, "centre_distance": None} | {f"{gear}.profile_shift": x for gear, x in moved.items()}
         yield choice(label, words, constant(fields))
+        if "module" in words and any(shifts.values()):
+            # At the centre distance of the drawing shifts move the tips, by the tip alteration that follows.
+            text = f"{words}, in the tip circles at the right centre distance"
+            yield choice(f"{label}, centre kept", text, constant(_tips_for_shifts(pair, moved)))
     centre = to_stated(pair.geometry.centre_distance, "mm")
     for gear, shift in shifts.items():
         if shift > 0.0:  # without a negative shift the teeth would wedge
             fields = {f"{gear}.profile_shift": 0.0, "centre_distance": centre, f"{gear}.tip_diameter": None}
             text = f"the profile shift of the {gear} ignored, at the right centre distance"
             yield choice(f"ignored: {gear}, centre kept", text, constant(fields))
+
+
+def _tips_for_shifts(pair: GearPair, shifts: Mapping[str, float]) -> Fields:
+    """Tip diameters that give the bottom clearance of the rack with other shifts at the same centre distance.
+
+    r_a1 = a - m z2/2 + m (h_a - x2): the radius of one tip has the shift of the other gear (ISO 21771).
+    """
+    rack, first = pair.basic_rack, pair.profile_shifts
+    moves = {
+        gear: (shifts[other] - own) * rack.module
+        for gear, other, own in zip(GEARS, GEARS[::-1], first[::-1], strict=True)
+    }
+    return {
+        f"{gear}.tip_diameter": to_stated(2.0 * (tip - moves[gear]), "mm")
+        for gear, tip in zip(GEARS, tip_radii(pair), strict=True)
+    }
 
 
 def _addendum_of_rack(problem: Problem, variant: Variant) -> list[Choice]:
@@ -269,7 +289,8 @@ def _causes() -> Iterator[Cause]:
     yield fixed_values(
         "profile shifts",
         "profile shifts ignored, exchanged or with the wrong sign; the standard centre distance",
-        "ignored (both, one gear), wrong sign (both, one gear), millimetres, standard centre, exchanged",
+        "ignored (both, one gear), wrong sign (both, one gear), millimetres (at the centre distance that "
+        "follows, or at the right one), standard centre, exchanged",
         _shifts,
     )
     yield fixed_values(

@@ -317,7 +317,7 @@ def _fixed() -> Iterator[Cause]:
     yield fixed_values(
         "speed of the curves",
         "the speed that the mesh frequency of the curves shows",
-        "ratio of the teeth, rpm, rad/s",
+        "ratio of the teeth, half, twice, rpm, rad/s",
         _speed_of_gear,
     )
     yield fixed_values(

@@ -16,6 +16,7 @@ import numpy as np
 
 from validation.check.curves import Channel
 from validation.check.explanations.cause import Cause, Choice, Kind, Variant
+from validation.check.explanations.fields import tip_radii
 from validation.check.explanations.reading import (
     Reading,
     families,
@@ -158,6 +159,8 @@ def _radii(problem: Problem, variant: Variant) -> list[Choice]:
             factors = {f"an angle of the {gear}": 1.0 / radius for gear, radius in radii.items()}
             cosine = math.cos(g.operating_pressure_angle)
             factors |= {"a length on the pitch circle": 1.0 / cosine, "a length over 1/cos(alpha)": cosine}
+            for gear, tip in zip(radii, tip_radii(problem.pair), strict=True):
+                factors[f"a length on the tip circle of the {gear}"] = tip / radii[gear]
         elif name.startswith("theta"):
             own = "pinion" if "_p" in name else "gear"
             factors = {"a length on the base circle": radii[own]}
@@ -515,7 +518,7 @@ def _causes() -> Iterator[Cause]:
     yield read(
         "radius of a channel",
         "an angle for a length, or of the other gear",
-        "base radii, ratio, cos(alpha)",
+        "base radii, tip radii, ratio, cos(alpha)",
         _radii,
     )
     yield read("channels swapped", "two channels swapped", "pairs of channels", _swapped)

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
+from lumped.errors import refuse
 from lumped.fields.units import to_stated
 from lumped.schema.fields_read import fields_read
 from lumped.schema.pair import GearPair
@@ -39,6 +40,8 @@ def _modulus(pair: GearPair, value: float, gears: Sequence[str] = GEARS) -> Fiel
 
 
 def _relief(pair: GearPair, value: float, gear: str, key: str) -> Fields:
+    if getattr(pair, gear).tip_relief is None:  # an earlier step has taken it away: this one acts on nothing
+        raise refuse(f"{gear}.tip_relief", "none", "a tip relief", "Give the gear a tip relief.")
     relief = tip_relief(pair, gear)
     return {f"{gear}.tip_relief": relief | {key: relief[key] * value}}
 

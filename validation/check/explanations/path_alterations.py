@@ -6,12 +6,12 @@ Sources: docs/how_to/check_your_model.md, "Explanations".
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from lumped.stiffness.energy import EnergyStiffness
 from lumped.stiffness.parabolic import ParabolicStiffness
 from validation.check.explanations.cause import Cause, Choice, Kind, Variant
-from validation.check.explanations.contact_laws import COMPLIANCES, Compliance
+from validation.check.explanations.contact_laws import COMPLIANCES, Compliance, TableJoin
 from validation.check.explanations.fields import reference_radii, tip_radii, with_prescribed_contact
 from validation.check.problem import Problem
 
@@ -19,9 +19,19 @@ from validation.check.problem import Problem
 _ENDS = (-0.6, -0.3, -0.1, 0.1, 0.3, 0.6)
 #: Trial places of the peak of a parabola over half the path.
 _PEAKS = (-0.5, -0.2, 0.2, 0.5)
-#: Entries of a table of the mesh stiffness over the mesh cycle; negative: steps.
-_TABLES = (4, 5, 6, 8, 9, 10, 12, 15, 16, 20, -8, -10, -12, -16, -20, -24, -30, -36)
-_SPLINES = (8, 10, 12, 16, 20, 24)
+#: Entries of a table of the mesh stiffness over the mesh cycle, by how they are joined.
+_TABLES: Mapping[TableJoin, tuple[int, ...]] = {
+    "lines": (4, 5, 6, 8, 9, 10, 12, 15, 16, 20),
+    "steps": (8, 10, 12, 16, 20, 24, 30, 36),
+    "middles": (8, 10, 12, 16, 20, 24, 30, 36),
+    "spline": (8, 10, 12, 16, 20, 24),
+}
+_JOINED: Mapping[TableJoin, str] = {
+    "lines": "joined by straight lines",
+    "steps": "without interpolation",
+    "middles": "without interpolation, each for half a step before and behind it",
+    "spline": "joined by a cubic spline",
+}
 #: Entries of a table of the stiffness of a tooth pair in a base pitch; negative: none at A.
 _PAIR_TABLES = (-5, -6, -8, -10, -12, -16, -20, 5, 8, 10, 16, 20)
 #: Trial compliances in series with a tooth pair, over that of the mean stiffness of a pair.
@@ -148,27 +158,20 @@ def _tables(problem: Problem, variant: Variant) -> list[Choice]:
     if not may_vary(problem, variant):
         return []
 
-    def change(entries: int, spline: bool = False) -> Callable[[Variant], Variant]:
-        return lambda one: one.with_physics(table=entries, spline=spline)
+    def change(entries: int, join: TableJoin) -> Callable[[Variant], Variant]:
+        return lambda one: one.with_physics(table=entries, table_join=join)
 
     def of_pair(entries: int) -> Callable[[Variant], Variant]:
         return lambda one: one.with_physics(pair_table=entries)
 
-    words = "a table of {} entries of the mesh stiffness over the mesh cycle, "
     choices = [
         _changed(
-            entries,
-            words.format(abs(entries))
-            + ("joined by straight lines" if entries > 0 else "without interpolation"),
-            change(entries),
+            f"{entries}, {join}",
+            f"a table of {entries} entries of the mesh stiffness over the mesh cycle, {_JOINED[join]}",
+            change(entries, join),
         )
-        for entries in _TABLES
-    ]
-    choices += [
-        _changed(
-            f"{entries}, spline", words.format(entries) + "joined by a cubic spline", change(entries, True)
-        )
-        for entries in _SPLINES
+        for join, counts in _TABLES.items()
+        for entries in counts
     ]
     choices += [
         _changed(
@@ -283,7 +286,7 @@ def _causes() -> Iterator[Cause]:
     yield fixed(
         "table of the stiffness",
         "a table of the stiffness of the mesh, or of a tooth pair, that is too coarse",
-        f"{min(map(abs, _TABLES))} to {max(map(abs, _TABLES))} entries a mesh cycle; lines, steps, splines",
+        f"{_TABLES['lines'][0]} to {_TABLES['steps'][-1]} entries a mesh cycle; lines, steps, splines",
         _tables,
     )
     yield fixed(

@@ -36,6 +36,7 @@ from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 from validation.check.explanations.contact_laws import (
     Compliance,
+    TableJoin,
     with_bearings_in_series,
     with_compliance,
     with_compliance_in_series,
@@ -142,8 +143,8 @@ class Physics:
     damper : law of the dampers of the teeth
     proportional_bearings : whether dampers of bearings are to their stiffness as that of the mesh to its mean
     path_start, path_end : base pitches by which the path of contact starts and ends further along its line
-    table : entries of a table of the stiffness of the whole mesh over a mesh cycle, joined by straight lines;
-        negative: steps; 0: no table
+    table : entries of a table of the stiffness of the whole mesh over a mesh cycle; 0: no table
+    table_join : how the entries of this table are joined
     compliance : change of parts of the compliance of the energy method
     peak : share of half the path by which the peak of a parabola lies further along it
     stiffness : change of the stiffness of the tooth pairs over the mesh cycle
@@ -159,7 +160,6 @@ class Physics:
     common_error : one error for all tooth pairs in contact
     pair_table : entries of a table of the stiffness of a tooth pair in each base pitch from A on, joined by
         straight lines; negative: without stiffness at A, as outside of contact; 0: no table
-    spline : whether the table of the stiffness is joined by a cubic spline
     most_pairs : most tooth pairs that carry load, the newest; negative: the oldest; 0: all
     last_value_held : whether the stiffness stays as at D up to the next whole mesh cycle
     series : constant compliance in series with each pair, over that of the mean stiffness of a pair
@@ -193,6 +193,7 @@ class Physics:
     path_start: float = 0.0
     path_end: float = 0.0
     table: int = 0
+    table_join: TableJoin = "lines"
     compliance: Compliance = ""
     peak: float = 0.0
     stiffness: Stiffness = ""
@@ -210,7 +211,6 @@ class Physics:
     relief_gear: float = 1.0
     common_error: CommonError = ""
     pair_table: int = 0
-    spline: bool = False
     most_pairs: int = 0
     last_value_held: bool = False
     series: float = 0.0
@@ -445,7 +445,7 @@ def altered_elements(pair: GearPair, physics: Physics) -> MeshElements:
     if physics.smoothing > 0.0:
         elements = with_smoothing(pair, elements, physics.smoothing)
     if physics.table:
-        elements = with_table(pair, elements, physics.table, spline=physics.spline)
+        elements = with_table(pair, elements, physics.table, physics.table_join)
     if physics.pair_table:
         elements = with_table_of_pair(pair, elements, physics.pair_table)
     if physics.most_pairs:

@@ -292,6 +292,10 @@ def _times(orders: ComplexOrders, factors: NDArray[np.complexfloating[Any, Any]]
     return replace(orders, values=orders.values * factors)
 
 
+#: Families of one unit: a program writes all its lengths in millimetres, or all its forces in kilonewtons.
+_BY_UNIT = {"m": "all lengths", "N": "all forces"}
+
+
 def families(channels: tuple[Channel, ...]) -> dict[str, tuple[str, ...]]:
     """Return groups of at least two channels that share a convention: words -> names of the channels."""
     members: dict[str, list[str]] = {}
@@ -310,6 +314,8 @@ def _families_of(channel: Channel) -> list[str]:
     name = channel.quantity
     stem = name.removesuffix("_ddot").removesuffix("_dot")
     words = ["all channels"]
+    if channel.kind.unit in _BY_UNIT:
+        words.append(_BY_UNIT[channel.kind.unit])
     if name.startswith("bearing_force"):
         words.append("all bearing forces")
     elif stem.startswith("theta"):
