@@ -42,6 +42,7 @@ from lumped.linked_code import (
     ShortLoopCompiler,
     refuse_calls_from_python,
 )
+from lumped.quick_compilation import compile_quickly
 
 F = TypeVar("F", bound=Callable[..., Any])
 Part = TypeVar("Part")
@@ -88,6 +89,7 @@ def _compiled(
     dispatcher = numba.njit(error_model="numpy", no_cfunc_wrapper=True, **options)(function)
     if not numba.config.DISABLE_JIT:
         share_library_functions(dispatcher)
+        compile_quickly(dispatcher)
         dispatcher._cache = _NoFiles(dispatcher) if linked else _KernelFiles(dispatcher)
         if linked:
             refuse_calls_from_python(dispatcher)
@@ -228,7 +230,8 @@ class _KernelFiles(FunctionCache):  # type: ignore[misc]  # numba ships no types
 class _NoFiles(_KernelFiles):
     """Of a function that is stored as a part of its callers: notes which state of the source is compiled."""
 
-    def _load_overload(self, sig: Any, target_context: Any) -> None:
+    def load_overload(self, sig: Any, target_context: Any) -> None:
+        """Nothing is loaded, so numba has no registers to read again before."""
         with contextlib.suppress(UnknownDependencyError):
             self._first_state = self._first_state or self._state()
 

@@ -146,6 +146,7 @@ UNITS: dict[str, StatedUnit] = {
     "Hz": StatedUnit("Hz", Decimal(1), "a frequency", "50 kHz"),
 }
 _ZERO_CELSIUS = Decimal("273.15")
+_PERCENT = Decimal("0.01")
 _NUMBER = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*")
 _NOT_IN_QUANTITY = re.compile(r"[^\w\s.+\-−–*/^()°º%²³⁻¹·⋅×]|%%")
 _PART = r"(?:(\d+\.?\d*|\.\d+)\s*(?:{})\s*)?"
@@ -237,16 +238,21 @@ def _number_to_si(text: str, unit: str) -> float:
 
 
 def _in_unit_of_files(text: str, unit: str) -> float | None:
-    """Convert a number with a unit of ``UNITS`` to SI, without pint: pint takes longer to import than to use.
+    """Convert a number with a unit of ``UNITS``, or per cent, to SI. Without pint: it takes long to import.
 
     None: the text is anything else, or has no finite value.
     """
     match = _NUMBER.match(text)
-    named = text[match.end() :] if match else ""
-    if match is None or named == "1" or named not in UNITS or UNITS[named].si != UNITS[unit].si:
+    if match is None:
         return None
+    named = text[match.end() :]
     with suppress(Overflow):
-        number = _number_to_si(match[1], named)
+        if named == "%" and unit == "1":
+            number = float(Decimal(match[1]) * _PERCENT)
+        elif named != "1" and named in UNITS and UNITS[named].si == UNITS[unit].si:
+            number = _number_to_si(match[1], named)
+        else:
+            return None
         return number if math.isfinite(number) else None
     return None
 

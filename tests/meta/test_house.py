@@ -12,7 +12,7 @@ PACKAGES = ("lumped", "multibody", "floquet", "validation")
 LOOSE = {
     "lumped": {"arguments", "cache", "calls", "compiler", "compiler_flags", "errors", "gauss_legendre",
      "kernel_stamps", "labelling", "linked_code", "outcomes", "path_function", "path_values", "public_names",
-     "ranges", "root_in_bracket", "typing"},
+     "quick_compilation", "ranges", "root_in_bracket", "typing"},
     "floquet": {"proven"},
     "validation": {"stop_signals", "cli", "pytest_plugin"},
 }  # fmt: skip

@@ -100,6 +100,14 @@ def test_an_import_loads_nothing_heavy_and_takes_a_second_and_a_half_at_most(pac
     assert seconds < 1.5
 
 
+def test_a_report_without_a_record_loads_nothing_that_reads_and_judges_records():
+    """Both processes of a report would import 68 modules that only a record needs."""
+    _, modules = loaded("import validation.reporting.build, validation.reporting.chapters", 10.0)
+    assert "validation.reporting.chapters.record" in modules
+    assert not [name for name in modules if name.startswith("validation.check")]
+    assert "scipy.stats" not in modules  # a third of a second, before the first result
+
+
 ROOT = Path(__file__).parents[2]
 PACKAGES = ("lumped", "multibody", "floquet", "validation")
 

@@ -21,7 +21,7 @@ import math
 
 import numpy as np
 import xarray as xr
-from scipy.stats import t as student
+from scipy.special import stdtrit
 
 from lumped.errors import NumericalError
 from lumped.labelling import Variable, labelled_dataset
@@ -117,7 +117,7 @@ def quantiles(values: FloatArray, shares: FloatArray) -> FloatArray:
     logarithms = np.log(values)
     count = logarithms.size
     scale = logarithms.std(ddof=1) * math.sqrt(1.0 + 1.0 / count)
-    return np.asarray(np.exp(logarithms.mean() + student.ppf(shares, count - 1) * scale))
+    return np.asarray(np.exp(logarithms.mean() + stdtrit(count - 1, shares) * scale))
 
 
 def has_range(teeth: xr.Dataset) -> bool:

@@ -21,7 +21,6 @@ from typing import Generic, TypeVar
 
 import numpy as np
 import xarray as xr
-from scipy.stats import binom, qmc, rankdata
 
 import lumped
 from floquet.orbits.deadline import Deadline
@@ -394,6 +393,8 @@ def percentile_interval(count: int, percentile: float) -> tuple[int, int]:
 
     The number of samples below a percentile is binomial. The interval therefore holds for every distribution.
     """
+    from scipy.stats import binom
+
     low, high = (
         float(binom.ppf(p, count, percentile / 100.0)) for p in (0.5 - 0.5 * _SURE, 0.5 + 0.5 * _SURE)
     )
@@ -414,6 +415,8 @@ def sobol_points(importance: FloatArray, samples: int, seed: int) -> FloatArray:
     dimensions unevenly, see docs/verification/uncertainty.md. Inputs that are equal by symmetry keep their
     order: importance is rounded.
     """
+    from scipy.stats import qmc  # takes a third of a second, and the first results have no use for it
+
     importance = np.round(importance, 6)
     points = qmc.Sobol(importance.size, rng=np.random.default_rng(seed)).random(samples)
     return np.asarray(points[:, np.argsort(np.argsort(-importance, kind="stable"))])
@@ -525,6 +528,8 @@ def _dataset(
     (input, end, column): results of one input alone; ``enough``: there are enough samples for a range, else
     percentiles are NaN.
     """
+    from scipy.stats import rankdata
+
     bearing = "force on the pinion bearings, mesh order"
     results = QUANTITIES | {name: ("N", f"{bearing} {m}") for m, name in enumerate(_ORDER_NAMES, 1)}
     results |= {} if pair.healthy is pair else TEETH
@@ -582,6 +587,8 @@ def _number(one: Input, share: float) -> float:
 
 def _rank_correlation(ranks: FloatArray, values: FloatArray) -> FloatArray:
     """Spearman's coefficient of the ranks (samples, inputs) of each input with a result; 0 for a constant."""
+    from scipy.stats import rankdata
+
     result_ranks = rankdata(values)
     result_ranks = result_ranks - result_ranks.mean()
     ranks = ranks - ranks.mean(axis=0)

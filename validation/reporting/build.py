@@ -11,7 +11,7 @@ from dataclasses import asdict, dataclass, replace
 from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import xarray as xr
 
@@ -24,11 +24,6 @@ from lumped.labelling import source_hash
 from lumped.model.periodic_system import Supports, with_supports
 from lumped.outcomes import Absent, Outcome
 from lumped.typing import Progress, ProgressRequest
-from validation.check.curves import Curves
-from validation.check.reading.reader import read
-from validation.check.record.channel import Record
-from validation.check.record.compare import check_record
-from validation.check.record.comparison import RecordComparison
 from validation.files.folder import FORMAT, FORMAT_VERSION, whole_folder
 from validation.files.output import write_dataset
 from validation.reporting.blocks import Content, Picture, Table, Text, chapter_data, plain
@@ -45,6 +40,10 @@ from validation.reporting.relations import failed_checks
 from validation.reporting.results import Results
 from validation.reporting.second_process import present_process
 from validation.reporting.tables import write_tables
+
+if TYPE_CHECKING:
+    from validation.check.curves import Curves
+    from validation.check.record.comparison import RecordComparison
 
 #: Chapters that read the range over speed.
 _LAST = ("contact_loss", "evidence")
@@ -184,6 +183,10 @@ def report(
 
 def _record(source: str | Path, pair: GearPair) -> Curves:
     """Read a measured record of the pair. Another speed or torque than that of the pair is refused."""
+    from validation.check.curves import Curves
+    from validation.check.reading.reader import read
+    from validation.check.record.compare import check_record
+
     curves = read(source, pair)
     if not isinstance(curves, Curves):
         action = "Check values over speed by spurcheck check."
@@ -209,7 +212,7 @@ def findings(results: Results) -> frozenset[str]:
     except NumericalError:  # the assumptions could not be checked
         outside = True
     conditions = {"contact": lost, "stable": unstable, "holds": outside or lost or unstable}
-    conditions["record"] = record is not None and record.verdict is not Record.CONFIRMS
+    conditions["record"] = record is not None and not record.confirms
     return frozenset(name for name, holds in conditions.items() if holds)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from contextlib import suppress
 from functools import cached_property
-from typing import Any, NamedTuple, Self, TypeVar, overload
+from typing import TYPE_CHECKING, Any, NamedTuple, Self, TypeVar, overload
 
 import numpy as np
 import xarray as xr
@@ -26,14 +26,6 @@ from lumped.model.sweep import resolved_sweep, systems_over_speed
 from lumped.outcomes import Absent, Outcome
 from lumped.schema.pair import GearPair
 from lumped.typing import IntArray, Progress
-from validation.check.curves import Curves
-from validation.check.ladder import Ladder, climb
-from validation.check.misfit import LIMIT
-from validation.check.motion_curves import MotionCurves
-from validation.check.problem import Problem
-from validation.check.record.channel import Record
-from validation.check.record.compare import compare_record
-from validation.check.record.comparison import RecordComparison
 from validation.cross_check.comparison import CrossCheck, crosscheck
 from validation.prediction.assumed_teeth import WIDENED, assumed_teeth, widened
 from validation.prediction.budget import error_budget
@@ -65,6 +57,12 @@ from validation.reporting.second_process import WORK, SecondProcess, warn_again
 from validation.signals.findings import TeethFindings
 from validation.validity.flags import Flag, validity_flags
 from validation.validity.plausibility import parameter_warnings
+
+if TYPE_CHECKING:
+    from validation.check.curves import Curves
+    from validation.check.ladder import Ladder
+    from validation.check.problem import Problem
+    from validation.check.record.comparison import RecordComparison
 
 #: Relative rounding of a result.
 _ROUNDING = 1e-9
@@ -545,6 +543,8 @@ class Results:
         """Comparison of the prediction with a measured record. None: there is no record."""
         if self.record is None:
             return None
+        from validation.check.record.compare import compare_record
+
         errors = [float(motion.attrs.get("error_estimate", math.nan)) for motion in self._motions]
         numerical = next((error for error in errors if math.isfinite(error)), 0.0)
         varied = self.record_samples
@@ -557,8 +557,13 @@ class Results:
         """What a record that contradicts the prediction is compatible with. None: no record contradicts."""
         if self.record is None or self.measured_error is None:
             return None
-        if self.measured_error.verdict is not Record.CONTRADICTS:
+        if not self.measured_error.contradicts:
             return None
+        from validation.check.ladder import climb
+        from validation.check.misfit import LIMIT
+        from validation.check.motion_curves import MotionCurves
+        from validation.check.problem import Problem
+
         self.stage("what would explain the record")
         prediction = self.prediction
         again = self.record.recurrence or prediction.pair.pinion.teeth

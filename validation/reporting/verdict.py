@@ -8,7 +8,6 @@ from enum import Enum
 from typing import NamedTuple
 
 from floquet.gear.response import Jump
-from validation.check.record.channel import Record
 from validation.files.formatting import number, quantity
 from validation.prediction.motion import Motion, Prediction
 from validation.prediction.resonance import Resonance
@@ -60,7 +59,7 @@ def verdict_of(results: Results, facts: Mapping[str, Fact]) -> Judgement:
     if danger := _danger(results, facts):
         return Judgement(Verdict.DO_NOT_RUN, f"{Verdict.DO_NOT_RUN.value}: {danger.cause}.", danger.effect)
     record = results.measured_error
-    if record is not None and record.verdict is Record.CONTRADICTS:
+    if record is not None and record.contradicts:
         return Judgement(Verdict.CONTRADICTED, f"{Verdict.CONTRADICTED.value}.", record.words)
     if reason := results.prediction.reason:
         text = f"No motion with unilateral contact was found: {reason}"
@@ -68,7 +67,7 @@ def verdict_of(results: Results, facts: Mapping[str, Fact]) -> Judgement:
         return Judgement(Verdict.UNCERTAIN, headline, f"{text} {STANDS_IN}")
     running = running_words(results, facts)
     doubt = _doubt(results, facts)
-    confirmed = record is not None and record.verdict is Record.CONFIRMS
+    confirmed = record is not None and record.confirms
     if doubt is not None:
         ranged = any(results.spread(name) is not None for name in RANGED)
         more = "; the range is that of every possible machine." if ranged else "."
@@ -94,7 +93,7 @@ def _doubt(results: Results, facts: Mapping[str, Fact]) -> str | None:
         if widest != "dte_peak_to_peak":
             claims.append(f"{SHORT[widest]} {spread_words(spreads[widest])}")
         return ", ".join(claims)
-    if record is not None and record.verdict is Record.CONFIRMS:
+    if record is not None and record.confirms:
         return None
     return f"{facts['inputs'].claim}, and no record confirms the prediction" if assumed else None
 

@@ -121,11 +121,18 @@ def test_a_temperature_has_the_bits_of_the_unit_parser(number):
     assert to_si(f"{number} degC", "degC") == to_si(f"{number} °C", "degC")
 
 
+@pytest.mark.parametrize("number", ["0.1", "-7.3", "33.333333333333333333", "1e-3", "12.5"])
+def test_per_cent_has_the_bits_of_the_unit_parser(number):
+    """Text with a sign of multiplication is read by pint."""
+    assert to_si(f"{number}%", "1") == to_si(f"{number} %", "1") == to_si(f"{number}*percent", "1")
+
+
 def test_a_unit_of_files_needs_no_unit_parser(monkeypatch):
     monkeypatch.setattr("lumped.fields.units._registry", None)
     assert to_si("20 mm", "um") == 0.02
     assert to_si("70 degC", "degC") == 343.15
     assert to_si(" -2e3 N*m", "N*m") == -2000.0
+    assert to_si("0.1 %", "1") == 0.001
     with pytest.raises(TypeError, match="not callable"):
         to_si("20 inch", "mm")
 

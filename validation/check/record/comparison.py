@@ -83,6 +83,16 @@ class RecordComparison:
         return self.leading.verdict
 
     @property
+    def confirms(self) -> bool:
+        """Whether the record confirms the prediction."""
+        return self.verdict is Record.CONFIRMS
+
+    @property
+    def contradicts(self) -> bool:
+        """Whether the record contradicts the prediction."""
+        return self.verdict is Record.CONTRADICTS
+
+    @property
     def words(self) -> str:
         """Sentences: measured and predicted sizes, contradictions, and limits of the comparison.
 
