@@ -1,6 +1,7 @@
 """What the comparison says of the wrong models: the truth beside the ladder of explanations.
 
-    python -m benchmarks.foreign_models.ladder first|second|third|fourth|fifth|sixth|seventh|eighth [words]
+    python -m benchmarks.foreign_models.ladder first|second|third|fourth|fifth|sixth|seventh|eighth|ninth
+        [words]
 
 A reader decides whether the first explanation is the truth in other words: the registry has no names of the
 mistakes, and the mistakes have no names of the registry.
@@ -18,6 +19,7 @@ from benchmarks.foreign_models.cases import cases as first_set
 from benchmarks.foreign_models.eighth import judging as eighth_set
 from benchmarks.foreign_models.fifth import judging as fifth_set
 from benchmarks.foreign_models.fourth import judging as fourth_set
+from benchmarks.foreign_models.ninth import judging as ninth_set
 from benchmarks.foreign_models.second import held_back as second_set
 from benchmarks.foreign_models.seventh import judging as seventh_set
 from benchmarks.foreign_models.sixth import judging as sixth_set
@@ -33,6 +35,7 @@ SETS: Mapping[str, Callable[[str], Sequence[Case]]] = {
     "sixth": sixth_set,
     "seventh": seventh_set,
     "eighth": eighth_set,
+    "ninth": ninth_set,
 }
 
 
