@@ -6,7 +6,7 @@ import pytest
 import lumped
 from lumped.schema.bodies import bodies_of
 from tests.validation.check.motions import lumped_motion
-from tests.validation.check.test_explanations import COULOMB
+from tests.validation.check.sampled_motions import COULOMB
 from validation.check import check
 
 

@@ -6,7 +6,7 @@ import pytest
 import lumped
 from tests.unlike_pairs import unlike_pair
 from tests.validation.check.motions import lumped_motion
-from tests.validation.check.test_explanations import COULOMB, sampled
+from tests.validation.check.sampled_motions import COULOMB, sampled
 from validation.check.explanations.cause import Variant
 from validation.check.explanations.physics import Physics, altered_elements, motion_of
 from validation.check.explanations.registry import EXPLANATIONS

@@ -10,7 +10,7 @@ from lumped.path_of_contact.friction import contact_path
 from lumped.schema.bodies import bodies_of
 from tests.unlike_pairs import unlike_pair
 from tests.validation.check.motions import lumped_motion
-from tests.validation.check.test_explanations import COULOMB, sampled
+from tests.validation.check.sampled_motions import COULOMB, sampled
 from validation.check.explanations.cause import Variant
 from validation.check.explanations.physics import Physics, altered_elements, motion_of
 from validation.check.explanations.registry import EXPLANATIONS

@@ -9,7 +9,7 @@ import lumped
 from lumped.schema.bodies import bodies_of
 from lumped.stiffness.energy import pair_compliance
 from tests.unlike_pairs import unlike_pair
-from tests.validation.check.test_explanations import COULOMB
+from tests.validation.check.sampled_motions import COULOMB
 from validation.check.explanations.physics import Physics, altered_elements, altered_equations, motion_of
 
 

@@ -15,8 +15,8 @@ import pytest
 
 import lumped
 from lumped.schema.bodies import bodies_of
-from tests.unlike_pairs import unlike_pair
 from tests.validation.check.motions import lumped_motion
+from tests.validation.check.sampled_motions import CHANNELS, LIMIT, sampled
 from tests.validation.check.wrong_readings import (
     AXES,
     averaged,
@@ -39,77 +39,7 @@ from validation.check.explanations.registry import EXPLANATIONS
 from validation.check.ladder import climb
 from validation.check.problem import Problem
 
-LIMIT = 0.05
-CHANNELS = ("dte", "theta_g", "x_p", "y_g", "bearing_force_x_p")
-COULOMB = {
-    "mesh.contact": "prescribed",
-    "friction.law": "coulomb",
-    "friction.coefficient": 0.06,
-}
 PAGE = Path(__file__).parents[3] / "docs/how_to/check_your_model.md"
-
-
-def sampled(motion, channels=CHANNELS, cycles=2, per_cycle=421, phase=0.3):
-    """Curves of a motion, at phases of their own."""
-    place = phase + np.arange(cycles * per_cycle) / per_cycle
-    time = (place - phase) * motion.pair.geometry.mesh_period
-    return Curves(
-        "other", "time", time, tuple(Channel(name, name, motion.at(name, place)) for name in channels)
-    )
-
-
-@pytest.fixture(scope="module")
-def pairs():
-    """Name -> pair of the cases."""
-    unlike = lumped.load_gear_pair("high_contact_ratio_29_47").with_(COULOMB)
-    symmetric = lumped.load_gear_pair("nasa_28_28")
-    return {
-        "unlike": unlike,
-        "stiff bearings": unlike.with_({"bearings.stiffness": 4e9, "bearings.damping_ratio": 0.5}),
-        "energy": unlike.with_({"mesh.stiffness": {"model": "energy"}}),
-        "relieved": symmetric.with_(
-            {**COULOMB, "pinion.tip_relief": {"amount": "4 um", "start_roll_angle": "24 deg"}}
-        ),
-        "eccentric": symmetric.with_(
-            {**COULOMB, "mesh.relief": "ignored", "pinion.mounting": {"eccentricity": "10 um"}}
-        ),
-        "soft bearings": unlike.with_({"bearings.stiffness": 6e7}),
-        "polymer": unlike.with_({"gear.youngs_modulus": "3 GPa", "gear.poisson_ratio": 0.38}),
-        "rough": unlike.with_(
-            {
-                "friction.law": "xu_kahraman",
-                "friction.coefficient": None,
-                "pinion.roughness": "0.3 um",
-                "gear.roughness": "0.5 um",
-            }
-        ),
-        "both relieved": symmetric.with_(
-            {
-                **COULOMB,
-                "pinion.tip_relief": {"amount": "4 um", "start_roll_angle": "24 deg"},
-                "gear.tip_relief": {"amount": "6 um", "start_roll_angle": "23 deg"},
-            }
-        ),
-        "damped relief": symmetric.with_(
-            {
-                **COULOMB,
-                "operating.pinion_speed": "6000 rpm",
-                "mesh.damping_ratio": 0.3,
-                "pinion.tip_relief": {"amount": "14 um", "start_roll_angle": "25 deg"},
-                "gear.tip_relief": {"amount": "9 um", "start_roll_angle": "24 deg"},
-            }
-        ),
-        "unlike addenda": unlike.with_({"pinion.addendum": None, "gear.tip_alteration": "-0.4 mm"}),
-        "contact lost": lumped.load_gear_pair("nasa_art_25_31").healthy,
-        "shifted": unlike_pair("contact_ratio_1_1_large_shifts").with_(COULOMB),
-        "on shafts": unlike_pair("contact_ratio_2_3_on_shafts").with_(COULOMB),
-    }
-
-
-@pytest.fixture(scope="module")
-def shared():
-    """Name of a pair -> motions of its changed models."""
-    return {}
 
 
 #: Cause -> pair and label of the fixed value; None: the first one. Pair and value of a free parameter.
@@ -591,30 +521,6 @@ def test_channel_that_holds_another_quantity(name, words, share, pairs, shared):
     cause = "radius of a channel" if share else "another quantity"
     ladder = climbed(problem, shared, "unlike", cause)
     assert [step.name for step in ladder.steps] == [cause]
-    assert words in ladder.steps[0].sentence
-
-
-@pytest.mark.parametrize(
-    ("words", "names", "factor"),
-    [
-        ("all lengths", ("dte", "x_p", "y_g"), 1e3),
-        ("all forces", ("mesh_force", "bearing_force_x_p"), 1e-3),
-        ("a length on the tip circle of the pinion", ("dte",), None),
-    ],
-)
-def test_a_unit_of_all_channels_that_have_it(words, names, factor, pairs, shared):
-    """Millimetres and kilonewtons are of all lengths and forces; r_a/r_b of the pinion, by hand."""
-    pair = pairs["unlike"]
-    g = pair.geometry
-    if factor is None:
-        factor = g.tip_radius_pinion / g.base_radius_pinion
-    motion = lumped_motion(pair)
-    curves = sampled(motion, ("dte", "theta_p", "x_p", "y_g", "mesh_force", "bearing_force_x_p"))
-    problem = Problem.of(pair, changed(curves, names, lambda v: factor * v), motion)
-    ladder = climbed(
-        problem, shared, "unlike", "radius of a channel" if len(names) == 1 else "unit of a channel"
-    )
-    assert len(ladder.steps) == 1
     assert words in ladder.steps[0].sentence
 
 

@@ -8,7 +8,8 @@ import pytest
 import lumped
 from tests.unlike_pairs import unlike_pair
 from tests.validation.check.motions import lumped_motion
-from tests.validation.check.test_explanations import COULOMB, LIMIT, changed, sampled
+from tests.validation.check.sampled_motions import COULOMB, LIMIT, sampled
+from tests.validation.check.wrong_readings import changed
 from validation.check.curves import Channel
 from validation.check.explanations.cause import Variant
 from validation.check.explanations.physics import Physics, motion_of

@@ -7,7 +7,7 @@ import pytest
 
 import lumped
 from tests.validation.check.motions import lumped_motion
-from tests.validation.check.test_explanations import COULOMB, sampled
+from tests.validation.check.sampled_motions import COULOMB, sampled
 from validation.check.mesh_frequency import mesh_frequency
 
 
