@@ -36,6 +36,33 @@ def variant_of(pair, name, label):
     return next(one for one in choices if one.label == label).variant(Variant(pair))
 
 
+@pytest.mark.parametrize(
+    ("label", "power"), [("times the module", 1), ("over the module as millimetres", -1)]
+)
+def test_tips_of_shifts_in_another_unit(label, power):
+    """r_a1 = a - m z2/2 + m (h_a - x2): the bottom clearance of the rack is kept (ISO 21771)."""
+    module, addendum, shifts = 1.75, 0.9, (0.2, -0.1)
+    pair = lumped.load_gear_pair("high_contact_ratio_29_47").with_(
+        {
+            **COULOMB,
+            "basic_rack.module": module,
+            "basic_rack.addendum_coefficient": addendum,
+            "pinion.profile_shift": shifts[0],
+            "gear.profile_shift": shifts[1],
+            **{
+                f"{gear}.{size}": None for gear in ("pinion", "gear") for size in ("addendum", "tip_diameter")
+            },
+            "centre_distance": None,
+        }
+    )
+    changed = variant_of(pair, "profile shifts", f"{label}, centre kept").pair
+    assert changed.geometry.centre_distance == pytest.approx(pair.geometry.centre_distance, rel=1e-12)
+    for gear, teeth, shift in (("pinion", 47, shifts[1]), ("gear", 29, shifts[0])):
+        radius = 1e3 * pair.geometry.centre_distance - 0.5 * module * teeth
+        radius += module * (addendum - shift * module**power)
+        assert 1e3 * getattr(changed.geometry, f"tip_radius_{gear}") == pytest.approx(radius, rel=1e-9)
+
+
 def test_friction_over_the_path(pair):
     """mu is -0.06 before the pitch point and 0.06 behind it (Coulomb, s = sgn(xi - L_XP))."""
     xi, leads = places(pair)
