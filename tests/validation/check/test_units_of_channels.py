@@ -6,7 +6,19 @@ from tests.validation.check.motions import lumped_motion
 from tests.validation.check.sampled_motions import sampled
 from tests.validation.check.test_explanations import climbed
 from tests.validation.check.wrong_readings import changed
+from validation.check.explanations.reading import families
 from validation.check.problem import Problem
+
+
+def test_a_family_has_its_narrowest_name(pairs):
+    """Where the only forces are bearing forces, and the only lengths displacements, these are named."""
+    curves = sampled(
+        lumped_motion(pairs["unlike"]), ("theta_p", "x_p", "y_g", "bearing_force_x_p", "bearing_force_y_g")
+    )
+    found = families(curves.channels)
+    assert found["all bearing forces"] == ("bearing_force_x_p", "bearing_force_y_g")
+    assert found["all displacements of the gears"] == ("x_p", "y_g")
+    assert not {"all forces", "all lengths"} & set(found)
 
 
 @pytest.mark.parametrize(

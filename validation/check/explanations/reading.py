@@ -314,8 +314,6 @@ def _families_of(channel: Channel) -> list[str]:
     name = channel.quantity
     stem = name.removesuffix("_ddot").removesuffix("_dot")
     words = ["all channels"]
-    if channel.kind.unit in _BY_UNIT:
-        words.append(_BY_UNIT[channel.kind.unit])
     if name.startswith("bearing_force"):
         words.append("all bearing forces")
     elif stem.startswith("theta"):
@@ -337,6 +335,8 @@ def _families_of(channel: Channel) -> list[str]:
         words.append("everything of the pinion")
     if stem.endswith("_g") and not name.startswith("mesh"):
         words.append("everything of the gear")
+    if channel.kind.unit in _BY_UNIT:  # last: where all forces are bearing forces, these are named
+        words.append(_BY_UNIT[channel.kind.unit])
     return words
 
 
