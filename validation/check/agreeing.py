@@ -121,17 +121,13 @@ def _found(problem: Problem, limit: float) -> Iterator[Explanation]:
             f"motion at no mesh order is {percent(max(rests[name] for name in names))} of the motion, and "
             "does not decay",
         )
-    for names, label, words in (
-        (turning(problem), "whole angles", "whole angles, with the uniform rotation in them"),
-        (without_means(problem), "without means", "values without their means"),
-    ):
-        if names:
-            yield Explanation(
-                EXPORT.name,
-                label,
-                problem.misfit.value,
-                f"Compatible with {words}: {', '.join(names)}",
-            )
+    if names := without_means(problem):
+        yield Explanation(
+            EXPORT.name,
+            "without means",
+            problem.misfit.value,
+            f"Compatible with values without their means: {', '.join(names)}",
+        )
 
 
 def _fades(problem: Problem, names: list[str]) -> bool:

@@ -77,7 +77,8 @@ def ladder_figure(data: xr.Dataset) -> Figure:
     limit = 100.0 * float(data.attrs["limit"])
     colours = [BLUE if misfit <= limit else RED for misfit in misfits]
     ax.barh(places, misfits, height=0.16, color=colours, align="edge")
-    ax.set(ylim=(float(heights.sum()), -0.1), xlim=(0.0, 1.12 * float(misfits.max())), yticks=[])
+    right = 1.12 * max(float(misfits.max()), limit)  # curves that agree are far below the limit
+    ax.set(ylim=(float(heights.sum()), -0.1), xlim=(0.0, right), yticks=[])
     ax.axvline(limit, color=GREY, linewidth=0.8, linestyle="--")
     write_beside(ax, f"limit {limit:.2g} %", (limit, 1.0), (2, 2), ("data", "axes fraction"), color=GREY)
     ax.grid(visible=False, axis="y")

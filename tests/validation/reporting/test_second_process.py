@@ -211,8 +211,10 @@ def test_a_block_that_ends_ends_the_process(two_processors):
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
 def test_no_second_process_and_no_half_report_outlive_the_command(number, tmp_path):
     """Ctrl-C goes to all processes of a terminal, SIGKILL to the first process alone."""
+    # Where the tests themselves run in the background of a shell, their children ignore Ctrl-C.
+    listens = "import signal as s; s.signal(s.SIGINT, s.default_int_handler); "
     program = "import lumped.cache as c; c.cores = lambda: 2; from validation.cli import main; main()"
-    command = [sys.executable, "-c", program, "report", "nasa_28_28", "-o", "report"]
+    command = [sys.executable, "-c", listens + program, "report", "nasa_28_28", "-o", "report"]
     nothing = subprocess.DEVNULL
     first = subprocess.Popen(command, cwd=tmp_path, stdout=nothing, stderr=nothing, start_new_session=True)
     children = Path(f"/proc/{first.pid}/task/{first.pid}/children")

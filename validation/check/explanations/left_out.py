@@ -73,12 +73,12 @@ INTEGRATION = Cause(
     meaning="an integration with coarse tolerances: it agrees at the mesh orders, and moves at others too",
     span="motion at no mesh order above the limit that does not decay",
 )
-#: Forms of an export that the reading takes off: they are no difference.
+#: What an export has left out: it is no difference. (Whole angles leave nothing out, and a note tells them.)
 EXPORT = Cause(
     name="form of the export",
     kind=Kind.READING,
-    meaning="curves that agree but for what the reading takes off: angles that turn, removed means",
-    span="whole angles; without means",
+    meaning="curves that agree but for means that the export has removed",
+    span="without means",
 )
 
 #: Causes of what the comparison leaves out.
