@@ -101,9 +101,9 @@ QUESTIONS: dict[str, Callable[[GearPair], object]] = {
     "teeth": teeth_of,
     "profile shift of the pinion": lambda pair: (
         "none"
-        if pair.pinion.profile_shift == 0
+        if pair.profile_shifts[0] == 0  # also one that follows from the centre distance
         else "positive"
-        if pair.pinion.profile_shift > 0
+        if pair.profile_shifts[0] > 0
         else "negative"
     ),
     "face widths": lambda pair: "equal" if pair.pinion.face_width == pair.gear.face_width else "unequal",
