@@ -40,6 +40,8 @@ from lumped.linked_code import (
     LinkedCompiler,
     OptimisingCompiler,
     ShortLoopCompiler,
+    forms_of,
+    link_into_callers,
     refuse_calls_from_python,
 )
 from lumped.quick_compilation import compile_quickly
@@ -61,9 +63,10 @@ def compiled(**options: Any) -> Callable[[F], F]: ...
 def compiled(function: Any = None, /, **options: Any) -> Any:
     """Compile the function below with numba, stored on disk, IEEE arithmetic unless options say otherwise.
 
-    Without the wrapper for callers in C: there are none, and it takes a tenth of the time.
-    ``no_cpython_wrapper=True`` is for functions that compiled functions alone call. Their code is compiled
-    and stored as a part of the callers, see ``lumped.linked_code``. ``optimised_first=True`` is for those of
+    Without the wrapper for callers in C: there are none, and it takes a tenth of the time. In compiled
+    callers the function is a part of their code, see ``lumped.linked_code``; code of its own is compiled when
+    Python calls it. ``no_cpython_wrapper=True`` is for functions that compiled functions alone call.
+    ``optimised_first=True`` is for those of
     them that do most of the work of an inner loop, and have many functions below: the callers become faster,
     and compiling takes longer. ``long_loops=True`` is for functions with an inner loop of many iterations:
     LLVM writes their loops in vector instructions too, and compiling takes longer.
@@ -82,6 +85,9 @@ def _compiled(
     **options: Any,
 ) -> Any:
     linked = options.get("no_cpython_wrapper", False) and LINKING_IS_KNOWN
+    part = None
+    if LINKING_IS_KNOWN and not linked and not long_loops:
+        part = _compiled(function, **(options | {"no_cpython_wrapper": True}))
     if linked:
         options["pipeline_class"] = OptimisingCompiler if optimised_first else LinkedCompiler
     elif LINKING_IS_KNOWN and not long_loops:
@@ -93,6 +99,8 @@ def _compiled(
         dispatcher._cache = _NoFiles(dispatcher) if linked else _KernelFiles(dispatcher)
         if linked:
             refuse_calls_from_python(dispatcher)
+        if part is not None:
+            link_into_callers(dispatcher, part)
     return dispatcher
 
 
@@ -186,9 +194,9 @@ class _KernelFiles(FunctionCache):  # type: ignore[misc]  # numba ships no types
 
         A module that is loaded again changes the globals of functions that other modules still call.
         """
-        files = [
-            one._cache for one in compiled_behind(self._dispatcher) if isinstance(one._cache, _KernelFiles)
-        ]
+        behind = compiled_behind(self._dispatcher)
+        caches = [form._cache for one in behind for form in forms_of(one)]
+        files = [one for one in caches if isinstance(one, _KernelFiles)]
         return any(one._first_state not in (None, one._state()) for one in files)
 
     def _state(self) -> Any:

@@ -175,3 +175,19 @@ def refuse_calls_from_python(dispatcher: Any) -> None:
 
     dispatcher._compile_for_args = refuse
     dispatcher._insert = leave_out
+
+
+def link_into_callers(dispatcher: Any, part: Any) -> None:
+    """Let compiled callers take the code of ``part``, the same function as linked code.
+
+    The machine code for callers in Python is then compiled only where Python calls the function.
+    """
+    dispatcher.part = part
+    dispatcher.get_call_template = part.get_call_template
+    dispatcher.get_overload = part.get_overload
+
+
+def forms_of(dispatcher: Any) -> tuple[Any, ...]:
+    """Return a compiled function, and its form for compiled callers where that is another one."""
+    part = getattr(dispatcher, "part", None)
+    return (dispatcher,) if part is None else (dispatcher, part)

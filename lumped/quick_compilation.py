@@ -7,8 +7,12 @@ functions of this repository is compiled
 - no events tell how long LLVM is locked: each of the 100,000 calls of LLVM would tell every function that is
   being compiled, and nobody listens;
 - the variables of a statement are listed by the types of its parts, not by asking each part what it might be;
+- which variables live at the start of a block is found where numba needs it, once for a function and not
+  after each pass;
 - the type of an operation, such as float64 + float64, is found once;
-- the size of a machine type is found once: LLVM would read a text for each variable.
+- the size of a machine type is found once: LLVM would read a text for each variable;
+- numba does not look through all its registries for a form of each array that there is not;
+- where an error would be is written when there is an error.
 
 The code of the functions stays as it is, and so do their results. Afterwards numba is as it was.
 """
@@ -21,7 +25,7 @@ from contextlib import ExitStack, contextmanager
 from typing import Any
 
 from llvmlite.binding import ffi  # type: ignore[import-untyped]
-from numba.core import base, ir
+from numba.core import base, errors, ir, lowering, postproc, transforms, typeinfer
 from numba.core.types.functions import BaseFunction
 
 #: Steps that are replaced. With a numba that lacks one of them all steps are its own.
@@ -30,9 +34,23 @@ _STEPS: tuple[tuple[Any, str], ...] = (
     (getattr(ir, "Expr", None), "list_vars"),
     (BaseFunction, "get_call_type"),
     (base.BaseContext, "get_abi_sizeof"),
+    (base.BaseContext, "get_function"),
+    (getattr(postproc, "PostProcessor", None), "run"),
+    (typeinfer, "new_error_context"),
+    (lowering, "new_error_context"),
 )
-_ARE_KNOWN = all(name in vars(owner or object) for owner, name in _STEPS) and hasattr(
-    getattr(getattr(ffi, "lib", None), "_lock", None), "_cblist"
+#: What the steps use of numba.
+_USED: tuple[tuple[Any, str], ...] = (
+    (getattr(ffi, "lib", None), "_lock"),
+    (getattr(getattr(ffi, "lib", None), "_lock", None), "_cblist"),
+    (errors, "loc_info"),
+    (errors, "_format_msg"),
+    (errors, "_numba_path"),
+    (postproc, "VariableLifetime"),
+    (transforms, "canonicalize_cfg"),
+)
+_ARE_KNOWN = all(name in vars(owner or object) for owner, name in _STEPS) and all(
+    hasattr(owner, name) for owner, name in _USED
 )
 
 
@@ -95,7 +113,16 @@ def _without_lock_events() -> Iterator[None]:
 @contextmanager
 def _replaced_steps() -> Iterator[None]:
     own_steps = [vars(owner)[name] for owner, name in _STEPS]
-    steps = _list_vars_of_statement, _list_vars_of_expression, _call_type(own_steps[2]), _size(own_steps[3])
+    steps = (
+        _list_vars_of_statement,
+        _list_vars_of_expression,
+        _call_type(own_steps[2]),
+        _size(own_steps[3]),
+        _implementation(own_steps[4]),
+        _post_process(own_steps[5]),
+        _ErrorContext,
+        _ErrorContext,
+    )
     for (owner, name), step in zip(_STEPS, steps, strict=True):
         setattr(owner, name, step)
     try:
@@ -176,3 +203,61 @@ def _size(own_step: Callable[..., Any]) -> Callable[..., Any]:
 #: By the addresses of function and context, which the values keep: two objects never have one address.
 _SIGNATURES: dict[tuple[int, int, tuple[Any, ...]], tuple[Any, Any, Any]] = {}
 _SIZES: dict[tuple[int, str], tuple[int, Any]] = {}
+
+
+#: Operations for which numba asks whether there is a special form, and takes the general one where there is
+#: none, as of nearly every array and index.
+_OFTEN_WITHOUT_FORM = frozenset({"__array__", "static_getitem", "static_setitem"})
+
+
+def _implementation(own_step: Callable[..., Any]) -> Callable[..., Any]:
+    """What a function does in machine code. Its failure is numba's answer that there is no such form.
+
+    Before it fails numba reads all its registries again: a module could have been imported meanwhile.
+    """
+
+    def get_function(context: Any, function: Any, signature: Any, _firstcall: bool = True) -> Any:
+        again = _firstcall and not (isinstance(function, str) and function in _OFTEN_WITHOUT_FORM)
+        return own_step(context, function, signature, again)
+
+    return get_function
+
+
+def _post_process(own_step: Callable[..., Any]) -> Callable[..., Any]:
+    """What numba does with a function after each pass that changed it.
+
+    The lifetimes of variables are found when they are asked for. Which variables are set when a block is
+    entered is asked by generators alone, and by code in Python.
+    """
+
+    def run(processor: Any, emit_dels: bool = False, extend_lifetimes: bool = False) -> None:
+        function = processor.func_ir
+        if emit_dels or function.is_generator:
+            own_step(processor, emit_dels, extend_lifetimes)
+            return
+        function.blocks = transforms.canonicalize_cfg(function.blocks)
+        function.variable_lifetime = postproc.VariableLifetime(function.blocks)
+        function.generator_info = None
+
+    return run
+
+
+class _ErrorContext:
+    """Adds to an error what was being compiled; as numba's ``new_error_context``, without a generator."""
+
+    __slots__ = ("arguments", "message", "names")
+
+    def __init__(self, message: str, *arguments: Any, **names: Any) -> None:
+        self.message = message
+        self.arguments = arguments
+        self.names = names
+        place = names.get("loc")
+        if place is not None and not place.filename.startswith(errors._numba_path):
+            errors.loc_info.update(names)
+
+    def __enter__(self) -> None:
+        """Nothing."""
+
+    def __exit__(self, kind: Any, error: BaseException | None, trace: Any) -> None:
+        if isinstance(error, errors.NumbaError):
+            error.add_context(errors._format_msg(self.message, self.arguments, self.names))
