@@ -18,9 +18,11 @@ from __future__ import annotations
 from typing import Any
 
 import llvmlite.binding as llvm  # type: ignore[import-untyped]
+from numba.core import types
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase, DefaultPassBuilder
 from numba.core.compiler_machinery import LoweringPass, register_pass
+from numba.core.registry import CPUDispatcher
 from numba.core.typed_passes import AnnotateTypes
 
 #: Start of the names under which compiled code finds Python objects, one for each function.
@@ -177,14 +179,26 @@ def refuse_calls_from_python(dispatcher: Any) -> None:
     dispatcher._insert = leave_out
 
 
+class TwoForms(CPUDispatcher):  # type: ignore[misc]
+    """A function that Python calls, and that compiled functions call as another form of it."""
+
+    part: Any
+
+    @property
+    def _numba_type_(self) -> Any:
+        """What the name of the function stands for in compiled code."""
+        return types.Dispatcher(self.part)
+
+
 def link_into_callers(dispatcher: Any, part: Any) -> None:
     """Let compiled callers take the code of ``part``, the same function as linked code.
 
-    The machine code for callers in Python is then compiled only where Python calls the function.
+    The machine code for callers in Python is then compiled only where Python calls the function. While one
+    form is compiled, numba takes a call of the other one for a call of a function by itself, as it must.
     """
+    dispatcher.__class__ = TwoForms
     dispatcher.part = part
-    dispatcher.get_call_template = part.get_call_template
-    dispatcher.get_overload = part.get_overload
+    dispatcher._compiling_counter = part._compiling_counter
 
 
 def forms_of(dispatcher: Any) -> tuple[Any, ...]:

@@ -132,12 +132,10 @@ DEPENDENCIES = {
         "@compiled\ndef times(x):\n    def inner(x):\n        return 2.0 * x\n    return inner(x)",
         ("2.0", "3.0"),
     ),
-    "functions that call each other": (
-        "from pkg import called\nfrom pkg.called import even\n@compiled\ndef odd(x, n):\n"
-        "    if n == 0:\n        return 4.0 * x\n    return even(x, n - 1)\ncalled.odd = odd\n"
-        "@compiled\ndef f(x):\n    return odd(x, 3)",
-        "@compiled\ndef even(x, n):\n    if n == 0:\n        return 2.0 * x\n    return odd(x, n - 1)",
-        ("2.0", "3.0"),
+    "a function that calls itself": (
+        "from pkg.called import halved\n@compiled\ndef f(x):\n    return halved(8.0 * x, 2)",
+        "@compiled\ndef halved(x, n):\n    if n == 0:\n        return x\n    return halved(x, n - 1) / 2.0",
+        ("return x", "return 1.5 * x"),
     ),
     "fields of a record that is made": (
         "from pkg.called import Record\n@compiled\ndef f(x):\n    return Record(3.0, 2.0).second * x",
@@ -238,18 +236,6 @@ def test_code_of_a_file_that_was_written_after_its_import_is_not_stored(
     assert not list((tmp_path / "cache").rglob("*.kernel"))
 
 
-def test_code_that_calls_older_code_is_not_stored(package: Path, run: Run, tmp_path: Path) -> None:
-    """A module is loaded again after an edit; another one holds its function, compiled before the edit."""
-    called = "FACTOR = 2.0\n@compiled\ndef times(x):\n    return FACTOR * x"
-    late = "@compiled\ndef late(x):\n    return times(x)"
-    _write(package, called=called, caller=f"from pkg.called import times\nf = times\n{late}")
-    assert run() == (2.0, 0)
-    _write(package, called=called.replace("2.0", "3.0"))
-    importlib.reload(sys.modules["pkg.called"])
-    assert sys.modules["pkg.caller"].late(1.0) == 2.0
-    assert not list((tmp_path / "cache").rglob("late-*.kernel"))
-
-
 LINKED = CALLED.replace("@compiled\n", "@compiled(no_cpython_wrapper=True)\n")
 
 
@@ -263,8 +249,24 @@ def test_edits_of_linked_code_are_noticed_and_it_is_stored_in_its_callers(
     assert [run(), run()] == [(3.0, 0), (3.0, 1)]
 
 
-def test_code_that_calls_older_linked_code_is_not_stored(package: Path, run: Run, tmp_path: Path) -> None:
-    called = "FACTOR = 2.0\n@compiled(no_cpython_wrapper=True)\ndef times(x):\n    return FACTOR * x"
+def test_code_for_callers_in_python_is_compiled_when_python_calls(
+    package: Path, run: Run, tmp_path: Path
+) -> None:
+    _write(package, called=CALLED)
+    assert run() == (2.0, 0)
+    assert [path.name[:2] for path in (tmp_path / "cache").rglob("*.kernel")] == ["f-"]
+    function = sys.modules["pkg.called"].double
+    assert not function.signatures
+    assert function(1.0) == 2.0
+    assert list((tmp_path / "cache").rglob("double-*.kernel"))
+
+
+@pytest.mark.parametrize("decorator", ["@compiled", "@compiled(no_cpython_wrapper=True)"])
+def test_code_that_calls_older_code_is_not_stored(
+    decorator: str, package: Path, run: Run, tmp_path: Path
+) -> None:
+    """A module is loaded again after an edit; another one holds its function, compiled before the edit."""
+    called = f"FACTOR = 2.0\n{decorator}\ndef times(x):\n    return FACTOR * x"
     late = "@compiled\ndef late(x):\n    return times(x)"
     first = "@compiled\ndef f(x):\n    return times(x)"
     _write(package, called=called, caller=f"from pkg.called import times\n{first}\n{late}")
