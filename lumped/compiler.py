@@ -65,7 +65,7 @@ def compiled(function: Any = None, /, **options: Any) -> Any:
 
     Without the wrapper for callers in C: there are none, and it takes a tenth of the time. In compiled
     callers the function is a part of their code, see ``lumped.linked_code``; code of its own is compiled when
-    Python calls it. A function may call itself, but two functions may not call each other.
+    Python calls it. A function may not call itself, directly or through others.
     ``no_cpython_wrapper=True`` is for functions that compiled functions alone call.
     ``optimised_first=True`` is for those of
     them that do most of the work of an inner loop, and have many functions below: the callers become faster,

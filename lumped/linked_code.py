@@ -18,7 +18,7 @@ from __future__ import annotations
 from typing import Any
 
 import llvmlite.binding as llvm  # type: ignore[import-untyped]
-from numba.core import types
+from numba.core import errors, types
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase, DefaultPassBuilder
 from numba.core.compiler_machinery import LoweringPass, register_pass
@@ -186,15 +186,22 @@ class TwoForms(CPUDispatcher):  # type: ignore[misc]
 
     @property
     def _numba_type_(self) -> Any:
-        """What the name of the function stands for in compiled code."""
+        """What the name of the function stands for in compiled code.
+
+        Raises
+        ------
+        TypingError : the function calls itself: linked code has no address to which such a call could go
+        """
+        if self.part.is_compiling:
+            name = self.py_func.__qualname__
+            raise errors.TypingError(f"{name} calls itself, directly or through others. Write a loop.")
         return types.Dispatcher(self.part)
 
 
 def link_into_callers(dispatcher: Any, part: Any) -> None:
     """Let compiled callers take the code of ``part``, the same function as linked code.
 
-    The machine code for callers in Python is then compiled only where Python calls the function. While one
-    form is compiled, numba takes a call of the other one for a call of a function by itself, as it must.
+    The machine code for callers in Python is then compiled only where Python calls the function.
     """
     dispatcher.__class__ = TwoForms
     dispatcher.part = part

@@ -14,7 +14,7 @@ from typing import Any
 import filelock
 import numpy as np
 import pytest
-from numba.core import event
+from numba.core import errors, event
 from numba.core.compiler import Flags
 from numba.core.dispatcher import Dispatcher
 
@@ -132,11 +132,6 @@ DEPENDENCIES = {
         "@compiled\ndef times(x):\n    def inner(x):\n        return 2.0 * x\n    return inner(x)",
         ("2.0", "3.0"),
     ),
-    "a function that calls itself": (
-        "from pkg.called import halved\n@compiled\ndef f(x):\n    return halved(8.0 * x, 2)",
-        "@compiled\ndef halved(x, n):\n    if n == 0:\n        return x\n    return halved(x, n - 1) / 2.0",
-        ("return x", "return 1.5 * x"),
-    ),
     "fields of a record that is made": (
         "from pkg.called import Record\n@compiled\ndef f(x):\n    return Record(3.0, 2.0).second * x",
         "from typing import NamedTuple\nclass Record(NamedTuple):\n    first: float\n    second: float",
@@ -247,6 +242,20 @@ def test_edits_of_linked_code_are_noticed_and_it_is_stored_in_its_callers(
     assert [path.name[:2] for path in (tmp_path / "cache").rglob("*.kernel")] == ["f-"]
     _write(package, called=LINKED.replace("2.0", "3.0"))
     assert [run(), run()] == [(3.0, 0), (3.0, 1)]
+
+
+@pytest.mark.parametrize(
+    "called",
+    [
+        "@compiled\ndef double(x):\n    return x if x < 1.0 else double(0.5 * x)",
+        "@compiled\ndef other(x):\n    return double(x)\n@compiled\ndef double(x):\n    return other(x)",
+    ],
+    ids=["itself", "each other"],
+)
+def test_functions_that_call_themselves_are_refused(called: str, package: Path, run: Run) -> None:
+    _write(package, called=called)
+    with pytest.raises(errors.TypingError, match="double calls itself"):
+        run()
 
 
 def test_code_for_callers_in_python_is_compiled_when_python_calls(
