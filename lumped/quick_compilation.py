@@ -28,6 +28,8 @@ from llvmlite.binding import ffi  # type: ignore[import-untyped]
 from numba.core import base, errors, ir, lowering, postproc, transforms, typeinfer
 from numba.core.types.functions import BaseFunction
 
+#: Names of this module are missing in the types that numba ships.
+_ERRORS: Any = errors
 #: Steps that are replaced. With a numba that lacks one of them all steps are its own.
 _STEPS: tuple[tuple[Any, str], ...] = (
     (getattr(ir, "Stmt", None), "list_vars"),
@@ -252,12 +254,12 @@ class _ErrorContext:
         self.arguments = arguments
         self.names = names
         place = names.get("loc")
-        if place is not None and not place.filename.startswith(errors._numba_path):
-            errors.loc_info.update(names)
+        if place is not None and not place.filename.startswith(_ERRORS._numba_path):
+            _ERRORS.loc_info.update(names)
 
     def __enter__(self) -> None:
         """Nothing."""
 
     def __exit__(self, kind: Any, error: BaseException | None, trace: Any) -> None:
         if isinstance(error, errors.NumbaError):
-            error.add_context(errors._format_msg(self.message, self.arguments, self.names))
+            error.add_context(_ERRORS._format_msg(self.message, self.arguments, self.names))

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from llvmlite import ir as llvm_ir  # type: ignore[import-untyped]
 from llvmlite.binding import ffi  # type: ignore[import-untyped]
-from numba.core import errors, event, ir
+from numba.core import analysis, errors, event, ir
 from numba.core.compiler import run_frontend
 from numba.core.registry import cpu_target
 from numba.core.types.functions import BaseFunction
@@ -199,3 +199,62 @@ def test_no_garbage_is_collected_and_no_lock_is_told_while_a_function_is_compile
     assert "inner" in inside
     assert not collections
     assert not locks
+
+
+def _count(monkeypatch: pytest.MonkeyPatch, owner: Any, name: str) -> list[Any]:
+    """Note the arguments of each call of a step of numba."""
+    calls: list[Any] = []
+    own_step = getattr(owner, name)
+
+    def step(*arguments: Any) -> Any:
+        calls.append(arguments)
+        return own_step(*arguments)
+
+    monkeypatch.setattr(owner, name, step)
+    return calls
+
+
+def _in_both_ways(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, calls: list[Any]
+) -> tuple[list[Any], list[Any]]:
+    """Calls while a function is compiled with less work, and with numba's own steps."""
+    _code(_all_kinds)
+    quick = list(calls)
+    calls.clear()
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "other"))
+    monkeypatch.setattr(quick_compilation, "_ARE_KNOWN", False)
+    _code(_all_kinds)
+    return quick, calls
+
+
+def test_registries_are_not_read_for_each_array(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    calls = _count(monkeypatch, type(cpu_target.target_context), "load_additional_registries")
+    quick, own = _in_both_ways(monkeypatch, tmp_path, calls)
+    assert 0 < 3 * len(quick) < len(own)
+
+
+def test_variables_at_the_start_of_a_block_are_found_where_they_count(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    calls = _count(monkeypatch, analysis, "compute_live_variables")
+    quick, own = _in_both_ways(monkeypatch, tmp_path, calls)
+    assert 0 < 2 * len(quick) < len(own)
+
+
+def test_errors_say_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+    @called
+    def inner(x: float) -> Any:
+        return x.nothing  # type: ignore[attr-defined]
+
+    def outer(x: float) -> Any:
+        return inner(x) + 1.0
+
+    def text() -> str:
+        with pytest.raises(errors.TypingError) as caught:
+            compiled(outer)(1.0)
+        return re.sub("0x[0-9a-f]+", "", str(caught.value))
+
+    quick = text()
+    monkeypatch.setattr(quick_compilation, "_ARE_KNOWN", False)
+    assert quick == text()
+    assert quick.count("During: ") >= 3
