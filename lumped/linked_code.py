@@ -205,7 +205,6 @@ def link_into_callers(dispatcher: Any, part: Any) -> None:
     """
     dispatcher.__class__ = TwoForms
     dispatcher.part = part
-    dispatcher._compiling_counter = part._compiling_counter
 
 
 def forms_of(dispatcher: Any) -> tuple[Any, ...]:

@@ -17,6 +17,7 @@ from floquet.engine.many_multipliers import FastMultipliers, multipliers_of, qui
 from floquet.rank_one.kernel_input import own, packed
 from floquet.rank_one.kernels.gains import Limits, Points, Problem, most_steps
 from floquet.rank_one.kernels.taylor import propagate_points
+from floquet.rank_one.largest_flow import no_steps
 from floquet.rank_one.system import RankOneSystem
 from lumped.arguments import real_array, real_number, real_numbers
 from lumped.cache import cores
@@ -92,7 +93,7 @@ def fast_monodromies(
 
     def run(part: slice) -> int:
         points = Points(factors[part], zeta[part], T[part])
-        failed = propagate_points(problem, points, limits, M[part], bound[part])
+        failed = propagate_points(problem, points, limits, M[part], bound[part], no_steps(n))
         return -1 if failed < 0 else part.start + failed
 
     bad = [index for index in _in_slices(run, T.size) if index >= 0]

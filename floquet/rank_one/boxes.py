@@ -22,7 +22,7 @@ from numpy.polynomial.chebyshev import chebvander
 from floquet.rank_one.batch import fast_monodromies
 from floquet.rank_one.kernel_input import own, packed
 from floquet.rank_one.kernels.gains import Limits, Point, Problem
-from floquet.rank_one.kernels.taylor import largest_flow
+from floquet.rank_one.largest_flow import largest_flow
 from floquet.rank_one.piecewise import to_series
 from floquet.rank_one.system import RankOneSystem
 from lumped.typing import ComplexArray, FloatArray, IntArray, Progress

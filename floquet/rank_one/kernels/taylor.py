@@ -15,7 +15,7 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from floquet.engine.kernels.simd import LANES, aligned_empty, aligned_rows, load, plus, scaled, store, zero
+from floquet.engine.kernels.simd import LANES, aligned_rows, load, plus, scaled, store, zero
 from floquet.rank_one.kernels.gains import (
     ConstantPart,
     Limits,
@@ -36,16 +36,12 @@ from floquet.rank_one.kernels.gains import (
 from floquet.rank_one.kernels.product import (
     Steps,
     carry,
-    copy,
     divide,
-    frobenius,
-    gram,
-    multiply,
     product_workspace,
     steps_for,
 )
 from lumped.compiler import compiled, inlined
-from lumped.typing import FloatArray
+from lumped.typing import FloatArray, IntArray
 
 #: The same as ``inlined``; a product and a sum may become one instruction with one rounding.
 contracted = compiled(fastmath={"contract"}, _nrt=False, forceinline=True, no_cpython_wrapper=True)
@@ -426,13 +422,49 @@ def steps_of_period(problem: Problem, point: Point, limits: Limits, work: Worksp
     return count
 
 
+class RecordedSteps(NamedTuple):
+    """The steps of the last point, for those who ask; with room for none, nothing is recorded.
+
+    Attributes
+    ----------
+    matrices : (most, n, n) computed flows over the steps, the first step first; or (0, n, n)
+    errors : (most,) bounds on the 2-norms of their errors
+    sizes : (most,) their Frobenius norms
+    number : (1,) of steps
+    """
+
+    matrices: FloatArray
+    errors: FloatArray
+    sizes: FloatArray
+    number: IntArray
+
+
+@inlined
+def _record(steps: Steps, count: int, recorded: RecordedSteps) -> None:
+    """Copy the steps of a point, without the columns that fill up the lanes."""
+    n = recorded.matrices.shape[1]
+    recorded.number[0] = count
+    for k in range(count):
+        recorded.errors[k] = steps.errors[k]
+        recorded.sizes[k] = steps.sizes[k]
+        for i in range(n):
+            for j in range(n):
+                recorded.matrices[k, i, j] = steps.matrices[k, i, j]
+
+
 @compiled(nogil=True)
 def propagate_points(
-    problem: Problem, points: Points, limits: Limits, M: FloatArray, bound: FloatArray
+    problem: Problem,
+    points: Points,
+    limits: Limits,
+    M: FloatArray,
+    bound: FloatArray,
+    recorded: RecordedSteps,
 ) -> int:
     """Monodromy matrices M (N, 2m, 2m) in x = (omega eta, eta') of N points.
 
-    ``bound`` (N,) receives PROVEN bounds on the Frobenius norms of the errors of the matrices.
+    ``bound`` (N,) receives PROVEN bounds on the Frobenius norms of the errors of the matrices, ``recorded``
+    the steps of the last point.
 
     Returns the index of the first point that needs more than ``most_steps`` or MAX_TERMS; -1: there is none.
     """
@@ -452,44 +484,6 @@ def propagate_points(
         for i in range(n):
             for j in range(n):
                 M[k, i, j] = flow[i, j]
+        if k == points.periods.size - 1 and recorded.errors.size > 0:
+            _record(steps, count, recorded)
     return -1
-
-
-@inlined
-def _sharp_two_norm(A: FloatArray, square: FloatArray, fourth: FloatArray, eighth: FloatArray) -> float:
-    """Bound on the 2-norm: |A|^8 <= |(A^T A)^4|_F, too large by at most the 16th root of n."""
-    gram(A, square)
-    multiply(square, square, fourth)
-    multiply(fourth, fourth, eighth)
-    return math.sqrt(math.sqrt(math.sqrt(frobenius(eighth)))) * (1.0 + 1e-11)
-
-
-@compiled(nogil=True)
-def largest_flow(problem: Problem, point: Point, limits: Limits) -> tuple[float, float]:
-    """Largest 2-norm of the computed flows between any two ends of steps, and the sum of the steps' errors.
-
-    (nan, nan): too many steps.
-    """
-    work = workspace_for(problem)
-    n = 2 * problem.v.size
-    lanes = work.unit.shape[0]
-    most = most_steps(n)
-    steps = steps_for(most, n, lanes)
-    flows = aligned_empty(most * n * lanes).reshape((most, n, lanes))
-    product = aligned_rows(n, lanes)
-    square = aligned_rows(n, lanes)
-    fourth = aligned_rows(n, lanes)
-    count = steps_of_period(problem, point, limits, work, steps)
-    if count < 0:
-        return math.nan, math.nan
-    largest = 1.0
-    errors = 0.0
-    for j in range(count):
-        errors += steps.errors[j] + 2.0 * n * n * _U * steps.sizes[j]
-        copy(work.unit[:n], flows[j])
-        for i in range(j + 1):
-            multiply(steps.matrices[j], flows[i], product)
-            copy(product, flows[i])
-            if frobenius(product) > largest:
-                largest = max(largest, _sharp_two_norm(flows[i], square, fourth, product))
-    return largest, errors

@@ -17,7 +17,7 @@ from floquet.rank_one.boxes import (
 )
 from floquet.rank_one.kernel_input import packed
 from floquet.rank_one.kernels.gains import Limits, Point
-from floquet.rank_one.kernels.taylor import largest_flow
+from floquet.rank_one.largest_flow import largest_flow
 from floquet.rank_one.period_search import Effort, PatchSystem, PeriodVerdicts, proven_periods
 from floquet.rank_one.system import Gains, RankOneSystem
 from tests.floquet.rank_one.test_boxes import mathieu, meissner, no_factors
