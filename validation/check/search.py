@@ -273,7 +273,7 @@ class Search:
 
         This is the error of our motion, with the noise of the curves and a fiftieth of the limit.
         """
-        error = self.problem.motion.motion.attrs.get("error_estimate", 0.0)
+        error = self.problem.motion.plain.attributes.get("error_estimate", 0.0)
         return float(np.sqrt(noise_of(self.problem) ** 2 + error**2 + (limit / 50.0) ** 2))
 
     def expand(self, path: Path) -> list[Path]:
@@ -289,7 +289,7 @@ class Search:
     @property
     def _settles(self) -> bool:
         """Whether motions are looked for by runs that settle: only where that of the pair was found so."""
-        return bool(self.problem.motion.motion.attrs.get("origin") == Origin.SETTLED.value)
+        return bool(self.problem.motion.plain.attributes.get("origin") == Origin.SETTLED.value)
 
     @property
     def spent(self) -> bool:

@@ -23,7 +23,7 @@ from lumped.mesh.records import Records
 from lumped.model.equations import THETA_G, THETA_P, X_G, X_P, Y_G, Y_P, Structure, structure
 from lumped.model.mesh_cycle import MeshCycle
 from lumped.model.periodic_system import LTVSystem, supports_of
-from lumped.model.results import a_pair_pulls, dataset
+from lumped.model.results import LOAD_NOISE, PlainMotion, plain_linear
 from lumped.model.revolution_motion import plain_motion
 from lumped.model.steady import UNSTABLE, periodic_solution, sample_times
 from lumped.model.tooth_laws import ToothLaws
@@ -313,7 +313,7 @@ def motion_of(
     again = recurrence or pair.pinion.teeth
     system = altered_system(pair, physics)
     if physics.contact:
-        return MotionCurves(
+        return MotionCurves.of(
             pair, contact_motion(system, physics.contact, provenance(pair), _SAMPLES_OF_CONTACT), 1, again
         )
     if physics.pulling or prescribed:
@@ -335,8 +335,8 @@ def motion_of(
     if motion.spectral_radius > UNSTABLE:
         raise NumericalError("The periodic motion is unstable.")
     origin = partial(provenance, pair, samples_per_cycle=_SAMPLES, contact="unilateral")
-    labelled = plain_motion(motion, origin).dataset
-    return MotionCurves(pair, _with_bearing_forces(labelled, physics, system), motion.period, again)
+    plain = _with_bearing_forces(plain_motion(motion, origin), physics, system)
+    return MotionCurves(pair, plain, motion.period, again)
 
 
 def altered_system(pair: GearPair, physics: Physics) -> LTVSystem:
@@ -519,38 +519,47 @@ class AlteredLaws(ToothLaws):
         return laws
 
 
-def _linear_motion(system: LTVSystem, physics: Physics) -> xr.Dataset | None:
+def _linear_motion(system: LTVSystem, physics: Physics) -> PlainMotion | None:
     """The linear motion. None: the motion is unstable, or teeth pull and must not."""
     times = sample_times(system.period, _SAMPLES)
     solution = periodic_solution(system, times, estimate_error=False)
     if solution.spectral_radius > UNSTABLE:
         return None
     torques = {"pinion_torque": solution.pinion_torque, "brake_torque": solution.brake_torque}
-    motion = dataset(system, times, solution.states, provenance(system.pair) | torques)
-    if not physics.pulling and a_pair_pulls(system.pair, motion):
+    motion = plain_linear(system, times, solution.states, torques, partial(provenance, system.pair))
+    force = system.pair.operating.pinion_torque / system.pair.geometry.base_radius_pinion
+    if not physics.pulling and motion.values["normal_load"].min() < -LOAD_NOISE * force:
         return None
     if isinstance(system, StaticFriction):
         friction = static_friction(system, system.cycle.sample(times))
-        motion["friction_force"] = motion["friction_force"].copy(data=friction)
+        motion = _with_values(motion, {"friction_force": friction})
     return _with_bearing_forces(motion, physics, system)
 
 
-def _with_bearing_forces(motion: xr.Dataset, physics: Physics, system: LTVSystem) -> xr.Dataset:
+def _with_values(motion: PlainMotion, values: Mapping[str, FloatArray]) -> PlainMotion:
+    """The motion with other values of some variables, in its dataset too."""
+
+    def make_dataset() -> xr.Dataset:
+        return motion.dataset.assign({name: motion.dataset[name].copy(data=values[name]) for name in values})
+
+    return replace(motion, values={**motion.values, **values}, make_dataset=make_dataset)
+
+
+def _with_bearing_forces(motion: PlainMotion, physics: Physics, system: LTVSystem) -> PlainMotion:
     """The motion of a model without translations, with the forces that its bearings carry.
 
     Rigid bearings carry the forces of the mesh on their gear. A torsional model has no bearing forces.
     """
     if physics.bearings == "elastic":
         return motion
-    load = motion["normal_load"].to_numpy().sum(axis=0)
-    friction = motion["friction_force"].to_numpy().sum(axis=0)
+    load = motion.values["normal_load"].sum(axis=0)
+    friction = motion.values["friction_force"].sum(axis=0)
     true = structure(system.pair)
     rigid = 0.0 if physics.bearings == "left out" else 1.0
-    motion = motion.copy()
+    forces = {}
     names = {X_P: "x_p", X_G: "x_g", Y_P: "y_p", Y_G: "y_g"}
     for place in _HELD[physics.bearings]:
         name = names[place]
         force = -rigid * (true.normal[place] * load + true.friction_arm[place, 0] * friction)
-        variable = f"bearing_force_{name}"
-        motion[variable] = motion[variable].copy(data=force)
-    return motion
+        forces[f"bearing_force_{name}"] = force
+    return _with_values(motion, forces)
