@@ -42,6 +42,7 @@ from validation.check.misfit import ChannelMisfit, Misfit
 from validation.check.motion_curves import MotionCurves
 from validation.check.problem import Problem
 from validation.check.steps import Step
+from validation.check.two_steps import Effect, promising_pairs
 
 #: A change of the equations that takes something else away counts as this much worse, for each such thing.
 _SIDE_EFFECT = 1.25
@@ -62,6 +63,8 @@ OF_FREQUENCY = ("time axis", "speed of the curves")
 _MAY_BE_OF_FREQUENCY = "driving gear"
 #: Steps that are tried behind a step that changes our motion: those that promise most by their effect alone.
 _PROMISING = 30
+#: Pairs of steps that are tried at once: those that promise most by the effects of both alone.
+_PAIRS = 24
 #: Intervals of the grid of a free parameter that are tried.
 _INTERVALS = 2
 #: Free parameters that are searched by Brent's method where Gauss-Newton steps leave a misfit above this,
@@ -340,6 +343,54 @@ class Search:
             pass
         screened.sort(key=lambda one: one[0])
         return self._archived([self.fitted(one) for _, one in screened[:_REFINED]])
+
+    def with_two_steps(self, path: Path) -> list[Path]:
+        """Return paths with two steps more, those that promise most by the effects of both steps alone.
+
+        Two mistakes can hide each other: none of both then lowers the misfit by much alone.
+        """
+        found = []
+        with suppress(BudgetSpentError):
+            for one, other in promising_pairs(path.trial.residual, self._effects(path), _PAIRS):
+                again = self._behind((*path.steps, one), other)
+                trial = None if again is None else self.trial((*path.steps, one, again))
+                if again is not None and trial is not None:
+                    found.append(Path((*path.steps, one, again), trial))
+        found.sort(key=lambda one: one.score(0.0))
+        fitted = [self.fitted(one) for one in found[:_REFINED]]
+        return self._archived([one for one in fitted if all(step.changes for step in one.steps)])
+
+    def _behind(self, steps: Sequence[Step], step: Step) -> Step | None:
+        """A step that was chosen alone, behind other steps; None: it does not apply there."""
+        try:
+            variant = Variant(self.problem.pair)
+            for one in steps:
+                variant = one.of(variant)
+            if step.choice is None:
+                return step if step.cause.applies(self.problem, variant) else None
+            choices = step.cause.choices(self.problem, variant)
+        except SpurcheckError:
+            return None
+        return next((Step(step.cause, one) for one in choices if one.label == step.choice.label), None)
+
+    def _effects(self, path: Path) -> list[Effect]:
+        """What each step that was tried behind a path does to the residual, without those that do nothing."""
+        effects = []
+        nothing = np.zeros_like(path.trial.residual)
+        for step in self._fixed_steps(path):
+            trial = self.trial((*path.steps, step))
+            if trial is not None and step.choice is not None and not step.choice.vague:
+                effects.append(Effect(step, trial.residual - path.trial.residual, nothing))
+        for cause in self._free_causes(path):
+            places = [(0.0, nothing)]
+            for value in cause.grid:
+                trial = self.trial((*path.steps, Step(cause, None, cause.coordinate(value))))
+                if trial is not None:
+                    places.append((cause.coordinate(value), trial.residual - path.trial.residual))
+            places.sort(key=lambda place: place[0])
+            for (x0, one), (x1, other) in itertools.pairwise(places):
+                effects.append(Effect(Step(cause, None, x0), one, other - one, x1 - x0))
+        return [one for one in effects if one.start.any() or one.along.any()]
 
     def _screened(self, path: Path) -> list[tuple[float, Path]]:
         """Paths with one step more, not fitted, and the misfit that each promises; the smallest first."""
