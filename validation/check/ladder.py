@@ -149,6 +149,9 @@ def climb(
     if problem.misfit.value <= limit and all(step.slight for step in best.steps):
         best = search.start()  # the place of a jump between two samples, no mistake
     search.conclude()
+    if all(step.cause.kind is Kind.READING for step in best.steps):
+        finest = search.trial(best.steps)  # of our motion with all its samples
+        best = best if finest is None else Path(best.steps, finest)
     steps = tuple(_explanations(search, best, floor))
     return Ladder(problem.misfit.value, steps, best.trial.motion, search.runs, complete=complete)
 

@@ -8,7 +8,7 @@ Sources: docs/theory/equations.md, "Frame", for the mesh phase.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -139,6 +139,21 @@ class MotionCurves:
         share = touches * loads / np.where(total == 0.0, 1.0, total)
         static = self.pair.operating.pinion_torque / self.pair.geometry.base_radius_pinion
         return np.asarray(share * (static if quantity == "share of the static load" else loads))
+
+    def thinned(self, samples: int) -> MotionCurves:
+        """Return the motion with so many samples in a mesh cycle, where it has a multiple of them."""
+        step, rest = divmod(self.plain.time.size, samples * self.mesh_cycles)
+        if step < 2 or rest:
+            return self
+        every = slice(None, None, step)
+        values = {name: array[..., every] for name, array in self.plain.values.items()}
+        thin = replace(
+            self.plain,
+            time=self.plain.time[every],
+            values=values,
+            make_dataset=lambda: self.motion.isel(time=every),
+        )
+        return MotionCurves(self.pair, thin, self.mesh_cycles, self.recurrence)
 
     def mean_cycle(self) -> MotionCurves:
         """Return the motion averaged over the mesh cycles of its period."""

@@ -34,7 +34,7 @@ from validation.check.curve_orders import BIN, ChannelOrders
 from validation.check.explanations.cause import Cause, Kind, Variant
 from validation.check.explanations.design_inputs import has_relief
 from validation.check.explanations.misreadings import causes_of_channels
-from validation.check.explanations.physics import Physics, motion_of
+from validation.check.explanations.physics import SAMPLES, Physics, motion_of
 from validation.check.explanations.reading import Reading, read, steps_of
 from validation.check.explanations.registry import EXPLANATIONS
 from validation.check.mesh_frequency import SAME
@@ -175,8 +175,13 @@ class Search:
         self._tried_causes = self.causes
         self._start = time.process_time()
         self.run_until(1.0)
+        # With the samples of the trials, so that another reading of the curves has no advantage.
+        self._know(self.problem.motion.thinned(SAMPLES))
+
+    def _know(self, motion: MotionCurves) -> None:
+        """Take a motion as that of the model without changes."""
         start = Variant(self.problem.pair)
-        self.motions[start.pair, start.physics] = self.problem.motion
+        self.motions[start.pair, start.physics] = motion
 
     def start(self) -> Path:
         """Return the path without steps."""
@@ -204,6 +209,8 @@ class Search:
             variant = Variant(self.problem.pair)
             side_effects = 0
             for step in steps:
+                if step.choice is None and not step.cause.applies(self.problem, variant):
+                    return None  # a step before it was left out, or another one
                 before, variant = variant, step.of(variant)
                 side_effects += _side_effects(step.cause, before, variant)
         except SpurcheckError:
@@ -308,6 +315,8 @@ class Search:
         """Let the few trials that tell a path have a motion each, although the budget is spent."""
         self._end = math.inf
         self.most_motions = None
+        self._know(self.problem.motion)
+        self._trials.clear()
 
     def _with_one_step_more(self, path: Path) -> list[Path]:
         screened = self._screened(path)

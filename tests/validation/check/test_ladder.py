@@ -10,9 +10,10 @@ from tests.unlike_pairs import unlike_pair
 from tests.validation.check.motions import lumped_motion
 from tests.validation.check.sampled_motions import COULOMB, LIMIT, sampled
 from tests.validation.check.wrong_readings import changed
+from validation.check import reference
 from validation.check.curves import Channel
 from validation.check.explanations.cause import Variant
-from validation.check.explanations.physics import Physics, motion_of
+from validation.check.explanations.physics import SAMPLES, Physics, motion_of
 from validation.check.explanations.registry import EXPLANATIONS
 from validation.check.ladder import climb
 from validation.check.problem import Problem
@@ -261,3 +262,29 @@ def test_the_noise_of_curves_is_measured(pair):
     noisy = changed(curves, CHANNELS, lambda v: v + 0.3 * np.std(v) * random.standard_normal(v.size))
     assert clean < 1.2 * LIMIT / 50.0
     assert Search(Problem.of(pair, replace(noisy), motion), 1.0).floor(LIMIT) > 5.0 * clean
+
+
+def test_readings_are_tried_with_the_samples_of_other_trials(pair):
+    """Finer samples would be an advantage of readings. Their ladder has the finest motion in the end."""
+    fine = reference.lumped_motion(pair, samples=4 * SAMPLES)
+    curves = changed(sampled(fine, CHANNELS), ("x_p",), lambda v: 1e3 * v)
+    problem = Problem.of(pair, curves, fine)
+    assert Search(problem, 600.0).start().trial.motion.plain.time.size == SAMPLES
+    causes = [EXPLANATIONS[name] for name in ("unit of a channel", "mesh stiffness")]
+    ladder = climb(problem, limit=LIMIT, budget=600.0, causes=causes)
+    assert names(ladder) == ["unit of a channel"]
+    assert ladder.motion.plain.time.size == 4 * SAMPLES
+    assert ladder.motion.motion["dte"].to_numpy() == pytest.approx(fine.samples("dte"), rel=1e-12)
+
+
+def test_a_step_that_needs_another_one_has_no_trial_without_it(pair):
+    """The end of the parabola is an input of the parabola alone: behind another model it is no step."""
+    parabola = pair.with_({"mesh.stiffness": {"model": "parabolic"}})
+    motion = lumped_motion(parabola)
+    search = Search(Problem.of(parabola, sampled(motion, CHANNELS), motion), 600.0)
+    model = EXPLANATIONS["stiffness model"]
+    start = Variant(parabola)
+    choice = next(c for c in model.choices(search.problem, start) if c.label == "rectangular")
+    end = EXPLANATIONS["ends of the parabola"]
+    assert search.trial((Step(end, None, end.coordinate(end.grid[0])),)) is not None
+    assert search.trial((Step(model, choice), Step(end, None, end.coordinate(end.grid[0])))) is None

@@ -82,7 +82,7 @@ from validation.check.motion_curves import MotionCurves
 from validation.check.reference import lumped_motion
 
 #: Samples in a mesh cycle of an altered motion.
-_SAMPLES = 512
+SAMPLES = 512
 _SAMPLES_OF_CONTACT = 256
 #: Altered equations whose linear motion grows by more than this factor in a mesh cycle have no motion.
 _GROWS = 1.2
@@ -330,11 +330,11 @@ def motion_of(
         start = periodic_solution(system, np.zeros(1), estimate_error=False)
         if start.spectral_radius > _GROWS:
             raise NumericalError("The motion of the altered equations grows without bound.")
-    shooting = Shooting.of_laws(pair, system, AlteredLaws(pair, physics), _SAMPLES)
+    shooting = Shooting.of_laws(pair, system, AlteredLaws(pair, physics), SAMPLES)
     motion = motion_of_shooting(shooting, settles=settles)
     if motion.spectral_radius > UNSTABLE:
         raise NumericalError("The periodic motion is unstable.")
-    origin = partial(provenance, pair, samples_per_cycle=_SAMPLES, contact="unilateral")
+    origin = partial(provenance, pair, samples_per_cycle=SAMPLES, contact="unilateral")
     plain = _with_bearing_forces(plain_motion(motion, origin), physics, system)
     return MotionCurves(pair, plain, motion.period, again)
 
@@ -521,7 +521,7 @@ class AlteredLaws(ToothLaws):
 
 def _linear_motion(system: LTVSystem, physics: Physics) -> PlainMotion | None:
     """The linear motion. None: the motion is unstable, or teeth pull and must not."""
-    times = sample_times(system.period, _SAMPLES)
+    times = sample_times(system.period, SAMPLES)
     solution = periodic_solution(system, times, estimate_error=False)
     if solution.spectral_radius > UNSTABLE:
         return None
