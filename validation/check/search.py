@@ -38,7 +38,7 @@ from validation.check.explanations.physics import SAMPLES, Physics, motion_of
 from validation.check.explanations.reading import Reading, read, steps_of
 from validation.check.explanations.registry import EXPLANATIONS
 from validation.check.mesh_frequency import SAME
-from validation.check.misfit import ChannelMisfit, Misfit
+from validation.check.misfit import Misfit, residual_of
 from validation.check.motion_curves import MotionCurves
 from validation.check.problem import Problem
 from validation.check.steps import Step
@@ -74,6 +74,8 @@ _STALLED = 0.02
 _TRIALS = 14
 #: A change from cycle to cycle above this share of the motion is no noise but a motion that fades.
 _NOT_SETTLED = 0.01
+#: Change of the misfit by fewer samples of our motion up to which the trials have these samples.
+_THINNED = 0.02
 #: Readings behind which every other cause is tried: those that leave the smallest misfit.
 _HIDING_READINGS = 6
 #: Readings that can hide every other cause.
@@ -175,8 +177,22 @@ class Search:
         self._tried_causes = self.causes
         self._start = time.process_time()
         self.run_until(1.0)
+        self._samples, thin = self._least_samples()
         # With the samples of the trials, so that another reading of the curves has no advantage.
-        self._know(self.problem.motion.thinned(SAMPLES))
+        self._know(thin)
+
+    def _least_samples(self) -> tuple[int, MotionCurves]:
+        """Samples in a mesh cycle of the trials, and our motion with these samples.
+
+        The force of a damper jumps where teeth meet: at low speed its orders need more samples than others.
+        """
+        residual = residual_of(self.problem.misfit)
+        for samples in (SAMPLES, 2 * SAMPLES):
+            thin = self.problem.motion.thinned(samples)
+            change = residual_of(self.problem.misfit_with(thin)) - residual
+            if np.linalg.norm(change) < _THINNED:
+                return samples, thin
+        return 4 * SAMPLES, self.problem.motion
 
     def _know(self, motion: MotionCurves) -> None:
         """Take a motion as that of the model without changes."""
@@ -247,7 +263,9 @@ class Search:
                 with warnings.catch_warnings(), typed_errors():
                     warnings.simplefilter("ignore")
                     again = self.problem.curves.recurrence
-                    self.motions[key] = motion_of(pair, physics, again, settles=self._settles)
+                    self.motions[key] = motion_of(
+                        pair, physics, again, settles=self._settles, samples=self._samples
+                    )
             except SpurcheckError:
                 self.motions[key] = None
         return self.motions[key]
@@ -281,10 +299,13 @@ class Search:
     def floor(self, limit: float) -> float:
         """Return the misfit below which a difference says nothing.
 
-        This is the error of our motion, with the noise of the curves and a fiftieth of the limit.
+        This is the error of our motion, with that of the samples of the trials, the noise of the curves and a
+        fiftieth of the limit.
         """
         error = self.problem.motion.plain.attributes.get("error_estimate", 0.0)
-        return float(np.sqrt(noise_of(self.problem) ** 2 + error**2 + (limit / 50.0) ** 2))
+        thinned = self.start().trial.residual - residual_of(self.problem.misfit)
+        squares = noise_of(self.problem) ** 2 + error**2 + float(thinned @ thinned)
+        return float(np.sqrt(squares + (limit / 50.0) ** 2))
 
     def expand(self, path: Path) -> list[Path]:
         """Return the paths with one step more, each fitted; the misfit is smallest first.
@@ -648,24 +669,6 @@ def noise_of(problem: Problem) -> float:
     return float(np.sqrt(np.mean(squares)))
 
 
-def residual_of(misfit: Misfit) -> FloatArray:
-    """Return the residual, whose root sum square is the value of the misfit."""
-    groups = [_group(row) for row in misfit.channels]
-    parts = []
-    for row, group in zip(misfit.channels, groups, strict=True):
-        difference = (row.channel.orders.values - row.ours.values) / row.scale
-        mean = (row.channel.orders.mean - row.ours.mean) / row.static if row.compares_mean else 0.0
-        part = np.concatenate([difference.real, difference.imag, [mean]])
-        parts.append(part / np.sqrt(len(set(groups)) * groups.count(group)))
-    return np.asarray(np.concatenate(parts), dtype=np.float64)
-
-
-def _group(row: ChannelMisfit) -> str:
-    """Channels that count as one: all tooth pairs of a quantity; else the channel alone."""
-    one = row.channel.channel
-    return f"pairs: {one.quantity}" if one.tooth_pair else one.name
-
-
 def _without(residual: FloatArray, taken_up: FloatArray) -> float:
     """Size of a residual without the directions that are taken up."""
     return float(np.linalg.norm(residual - taken_up @ (taken_up.T @ residual)))
@@ -685,4 +688,4 @@ def without_step(path: Path, number: int) -> tuple[Step, ...]:
     return (*path.steps[:number], *path.steps[number + 1 :])
 
 
-__all__ = ["BudgetSpentError", "Motions", "Path", "Search", "Step", "Trial", "residual_of", "without_step"]
+__all__ = ["BudgetSpentError", "Motions", "Path", "Search", "Step", "Trial", "without_step"]

@@ -16,8 +16,9 @@ from validation.check.explanations.cause import Variant
 from validation.check.explanations.physics import SAMPLES, Physics, motion_of
 from validation.check.explanations.registry import EXPLANATIONS
 from validation.check.ladder import climb
+from validation.check.misfit import residual_of
 from validation.check.problem import Problem
-from validation.check.search import Path, Search, Step, residual_of
+from validation.check.search import Path, Search, Step
 from validation.check.words import ladder_words
 
 CHANNELS = ("dte", "x_p", "y_g", "mesh_force", "bearing_force_y_g")
@@ -288,3 +289,17 @@ def test_a_step_that_needs_another_one_has_no_trial_without_it(pair):
     end = EXPLANATIONS["ends of the parabola"]
     assert search.trial((Step(end, None, end.coordinate(end.grid[0])),)) is not None
     assert search.trial((Step(model, choice), Step(end, None, end.coordinate(end.grid[0])))) is None
+
+
+def test_trials_have_more_samples_where_the_force_jumps(pair):
+    """The force of a damper jumps where teeth meet: at low speed its orders need more samples."""
+    slow = pair.with_({"mesh.damping_ratio": 0.3, "operating.pinion_speed": "400 rpm"})
+    sizes = {}
+    for name, turning in (("slow", slow), ("fast", pair)):
+        fine = reference.lumped_motion(turning, samples=4 * SAMPLES)
+        search = Search(Problem.of(turning, sampled(fine, ("mesh_force",)), fine), 600.0)
+        other = search.trial((Step(EXPLANATIONS["torque"], None, 0.1),))
+        sizes[name] = [search.start().trial.motion.plain.time.size, other.motion.plain.time.size]
+        error = search.start().trial.residual - residual_of(search.problem.misfit)
+        assert search.floor(LIMIT) > np.linalg.norm(error)
+    assert sizes == {"slow": [4 * SAMPLES] * 2, "fast": [SAMPLES] * 2}

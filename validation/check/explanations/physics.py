@@ -283,7 +283,12 @@ UNALTERED = Physics()
 
 
 def motion_of(
-    pair: GearPair, physics: Physics, recurrence: int | None, *, settles: bool = True
+    pair: GearPair,
+    physics: Physics,
+    recurrence: int | None,
+    *,
+    settles: bool = True,
+    samples: int = SAMPLES,
 ) -> MotionCurves:
     """Return the motion of a pair with alterations of the model.
 
@@ -293,6 +298,7 @@ def motion_of(
     physics : alterations of the model
     recurrence : as of ``lumped_motion``
     settles : whether a run settles where no stable motion is near the linear one; such a run takes seconds
+    samples : samples in a mesh cycle; another contact force has fewer
 
     Raises
     ------
@@ -301,7 +307,7 @@ def motion_of(
     """
     prescribed = pair.mesh.contact == "prescribed"
     if pair.healthy is not pair and physics == UNALTERED:
-        return lumped_motion(pair, recurrence)
+        return lumped_motion(pair, recurrence, samples=samples)
     if pair.healthy is not pair or (physics.of_equations and pair.shafts is not None):
         raise NumericalError("This alteration needs like teeth; of the equations of motion, springs too.")
     if physics.of_error and not prescribed:
@@ -317,7 +323,7 @@ def motion_of(
             pair, contact_motion(system, physics.contact, provenance(pair), _SAMPLES_OF_CONTACT), 1, again
         )
     if physics.pulling or prescribed:
-        linear = _linear_motion(system, physics)
+        linear = _linear_motion(system, physics, samples)
         if linear is not None:
             return MotionCurves(pair, linear, 1, again)
     if physics.pulling:
@@ -330,11 +336,11 @@ def motion_of(
         start = periodic_solution(system, np.zeros(1), estimate_error=False)
         if start.spectral_radius > _GROWS:
             raise NumericalError("The motion of the altered equations grows without bound.")
-    shooting = Shooting.of_laws(pair, system, AlteredLaws(pair, physics), SAMPLES)
+    shooting = Shooting.of_laws(pair, system, AlteredLaws(pair, physics), samples)
     motion = motion_of_shooting(shooting, settles=settles)
     if motion.spectral_radius > UNSTABLE:
         raise NumericalError("The periodic motion is unstable.")
-    origin = partial(provenance, pair, samples_per_cycle=SAMPLES, contact="unilateral")
+    origin = partial(provenance, pair, samples_per_cycle=samples, contact="unilateral")
     plain = _with_bearing_forces(plain_motion(motion, origin), physics, system)
     return MotionCurves(pair, plain, motion.period, again)
 
@@ -519,9 +525,9 @@ class AlteredLaws(ToothLaws):
         return laws
 
 
-def _linear_motion(system: LTVSystem, physics: Physics) -> PlainMotion | None:
+def _linear_motion(system: LTVSystem, physics: Physics, samples: int) -> PlainMotion | None:
     """The linear motion. None: the motion is unstable, or teeth pull and must not."""
-    times = sample_times(system.period, SAMPLES)
+    times = sample_times(system.period, samples)
     solution = periodic_solution(system, times, estimate_error=False)
     if solution.spectral_radius > UNSTABLE:
         return None
