@@ -25,7 +25,7 @@ from lumped.model.mesh_cycle import MeshCycle
 from lumped.model.periodic_system import LTVSystem, supports_of
 from lumped.model.results import LOAD_NOISE, PlainMotion, plain_linear
 from lumped.model.revolution_motion import plain_motion
-from lumped.model.steady import UNSTABLE, periodic_solution, sample_times
+from lumped.model.steady import UNSTABLE, PeriodicSolution, periodic_solution, sample_times
 from lumped.model.tooth_laws import ToothLaws
 from lumped.model.unilateral_motion import Shooting, motion_of_shooting
 from lumped.path_function import PathFunction
@@ -78,6 +78,7 @@ from validation.check.explanations.pair_laws import (
     with_stiffness,
     with_variation,
 )
+from validation.check.explanations.step_schemes import Scheme, Stepped, stepped
 from validation.check.motion_curves import MotionCurves
 from validation.check.reference import lumped_motion
 
@@ -167,6 +168,7 @@ class Physics:
     excitation : a constant mesh stiffness that a transmission error excites
     late_force : mesh cycles by which the forces of the teeth come late
     contact : another contact force
+    scheme, steps : scheme of an integrator, and its steps in a mesh cycle; empty: steps of no length
     bearings : "rigid" and the like: without these translations, bearings carry the mesh force; "left out": a
         torsional model
     """
@@ -218,6 +220,8 @@ class Physics:
     excitation: Excitation = ""
     late_force: float = 0.0
     contact: ContactForce = ""
+    scheme: Scheme = ""
+    steps: int = 0
     bearings: Bearings = "elastic"
 
     @property
@@ -328,6 +332,8 @@ def motion_of(
             return MotionCurves(pair, linear, 1, again)
     if physics.pulling:
         raise NumericalError("The linear motion is unstable.")
+    if physics.scheme:
+        raise NumericalError("Long steps need prescribed contact that is not lost; they are stable.")
     if physics.late_force:
         raise NumericalError("Forces that come late make the motion unstable, or teeth part.")
     if physics.course in STATIC_LOAD:
@@ -528,7 +534,11 @@ class AlteredLaws(ToothLaws):
 def _linear_motion(system: LTVSystem, physics: Physics, samples: int) -> PlainMotion | None:
     """The linear motion. None: the motion is unstable, or teeth pull and must not."""
     times = sample_times(system.period, samples)
-    solution = periodic_solution(system, times, estimate_error=False)
+    solution: Stepped | PeriodicSolution
+    if physics.scheme:
+        solution = stepped(system, physics.scheme, physics.steps, samples)
+    else:
+        solution = periodic_solution(system, times, estimate_error=False)
     if solution.spectral_radius > UNSTABLE:
         return None
     torques = {"pinion_torque": solution.pinion_torque, "brake_torque": solution.brake_torque}
