@@ -20,9 +20,16 @@ _WORDS: dict[Scheme, str] = {
     "semi-implicit Euler": "semi-implicit Euler steps (displacements by the new rates)",
     "trapezoidal rule": "steps of the trapezoidal rule, as of Newmark's method",
 }
-#: Steps between two samples of the curves, and fewest and most steps in a mesh cycle.
+#: Steps between two samples of the curves, and fewest steps in a mesh cycle.
 _BETWEEN_SAMPLES = (1, 2, 4)
-_FEWEST, _MOST = 16, 2000
+_FEWEST = 16
+#: Most steps in a mesh cycle: a scheme without damping of its own differs little with more.
+_MOST: dict[Scheme, int] = {
+    "implicit Euler": 2000,
+    "explicit Euler": 2000,
+    "semi-implicit Euler": 200,
+    "trapezoidal rule": 200,
+}
 
 
 def _schemes(problem: Problem, variant: Variant) -> list[Choice]:
@@ -39,7 +46,7 @@ def _choices(problem: Problem) -> Iterator[Choice]:
     for scheme, words in _WORDS.items():
         for between in _BETWEEN_SAMPLES:
             steps = round(between * of_samples)
-            if _FEWEST <= steps <= _MOST:
+            if _FEWEST <= steps <= _MOST[scheme]:
                 text = f"{words}, {steps} in a mesh cycle"
                 yield Choice(f"{scheme}, {steps} a cycle", text, _with(scheme, steps))
 
