@@ -106,7 +106,7 @@ def record_of(
 ) -> Curves:
     """A run that records quantities with white noise, the transmission error where none are named."""
     motion = motion_of(truth, kind, rpm, torque)
-    curves = MotionCurves(motion.pair, motion.cycle, motion.mesh_cycles, truth.pinion.teeth)
+    curves = MotionCurves.of(motion.pair, motion.cycle, motion.mesh_cycles, truth.pinion.teeth)
     u = np.arange(max(CYCLES, motion.mesh_cycles) * PER_CYCLE) / PER_CYCLE
     random = np.random.default_rng([seed, int(rpm)])
     channels = []

@@ -111,7 +111,7 @@ def test_multibody_twins_are_near_and_settled(pair):
 def test_measured_points_land_on_their_speed_and_pair(pair):
     point = FIGURE_7[1]
     law_three = point.of(pair).with_(friction__law="xu_kahraman")
-    truth = MotionCurves(law_three, steady_state(law_three, samples_per_cycle=1024), 1, 5)
+    truth = MotionCurves.of(law_three, steady_state(law_three, samples_per_cycle=1024), 1, 5)
     record = tooth_force_record(truth, seed=2, engagements=4, start=1.2, noise=0.0)
     points = measured_points(pair, record, bins=24)
     assert points.attrs["speed_rpm"] == pytest.approx(point.speed, rel=1e-9)

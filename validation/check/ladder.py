@@ -34,6 +34,8 @@ _GAIN_OF_FREE = 0.75
 _FAR = 3.0
 #: A path of the beam is followed up to this many times the score of the best one.
 _NEAR_BEST = 1.6
+#: Two steps at once that leave less than this share of the best single step need no other second step.
+_MUCH = 0.25
 #: A single step that leaves more than this share of the misfit says little.
 _LITTLE = 0.5
 #: Two motions are the same where they differ by this share of the misfit.
@@ -147,6 +149,9 @@ def climb(
     if problem.misfit.value <= limit and all(step.slight for step in best.steps):
         best = search.start()  # the place of a jump between two samples, no mistake
     search.conclude()
+    if all(step.cause.kind is Kind.READING for step in best.steps):
+        finest = search.trial(best.steps)  # of our motion with all its samples
+        best = best if finest is None else Path(best.steps, finest)
     steps = tuple(_explanations(search, best, floor))
     return Ladder(problem.misfit.value, steps, best.trial.motion, search.runs, complete=complete)
 
@@ -155,9 +160,16 @@ def _best_path(search: Search, limit: float, floor: float) -> Path:
     """Path at which the beam ends."""
     beam = _starts(search, floor)
     best = beam[0]
+    start = best
     enough = max(limit * _ENOUGH, floor)
     while best.trial.value > enough and len(best.steps) < _MOST_STEPS and not search.spent:
         candidates: list[Path] = []
+        if len(best.steps) == len(start.steps) + 1:
+            candidates += [one for one in search.with_two_steps(start) if _accepted(one, best, limit, floor)]
+            if candidates and candidates[0].trial.value < max(_MUCH * best.trial.value, enough):
+                beam = _distinct(candidates, floor, limit)
+                best = beam[0]
+                continue
         near = [path for path in beam if path.score(floor, limit) < _NEAR_BEST * beam[0].score(floor, limit)]
         for path in near:
             candidates += [one for one in search.expand(path) if _accepted(one, path, limit, floor)]
@@ -170,6 +182,8 @@ def _best_path(search: Search, limit: float, floor: float) -> Path:
                 break
             # No single step says enough: a wrong sign may hide every other cause.
             joint = [one for one in search.with_reading(best) if _accepted(one, best, limit, floor)]
+            if not best.steps:
+                joint += [one for one in search.with_two_steps(best) if _accepted(one, best, limit, floor)]
             beam = _distinct([*beam, *joint], floor, limit)
             if not beam:
                 break

@@ -141,6 +141,24 @@ def misfit_of(
     return Misfit(tuple(channels), shift)
 
 
+def residual_of(misfit: Misfit) -> FloatArray:
+    """Return the residual, whose root sum square is the value of the misfit."""
+    groups = [_group(row) for row in misfit.channels]
+    parts = []
+    for row, group in zip(misfit.channels, groups, strict=True):
+        difference = (row.channel.orders.values - row.ours.values) / row.scale
+        mean = (row.channel.orders.mean - row.ours.mean) / row.static if row.compares_mean else 0.0
+        part = np.concatenate([difference.real, difference.imag, [mean]])
+        parts.append(part / np.sqrt(len(set(groups)) * groups.count(group)))
+    return np.asarray(np.concatenate(parts), dtype=np.float64)
+
+
+def _group(row: ChannelMisfit) -> str:
+    """Channels that count as one: all tooth pairs of a quantity; else the channel alone."""
+    one = row.channel.channel
+    return f"pairs: {one.quantity}" if one.tooth_pair else one.name
+
+
 def mean_is_removed(theirs: ChannelOrders, ours: ComplexOrders, static: float) -> bool:
     """Return whether the mean of a channel was removed by an export or a sensor: ours is not 0, theirs is."""
     return _SMALL * static < abs(ours.mean) and abs(theirs.orders.mean) < _REMOVED * abs(ours.mean)

@@ -8,7 +8,7 @@ Sources: docs/theory/equations.md, "Frame", for the mesh phase.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -17,6 +17,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from lumped.errors import refuse
+from lumped.model.results import PlainMotion, plain
 from lumped.schema.bodies import bodies_of
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray, IntArray
@@ -48,27 +49,45 @@ class MotionCurves:
     Attributes
     ----------
     pair : the gear pair
-    motion : dataset at equal steps over ``mesh_cycles``
+    plain : the motion as arrays at equal steps over ``mesh_cycles``
     mesh_cycles : mesh cycles in the period of the motion
     recurrence : mesh cycles after which the same labelled tooth pair is in contact again
     """
 
     pair: GearPair
-    motion: xr.Dataset
+    plain: PlainMotion
     mesh_cycles: int
     recurrence: int
+    _samples: dict[str, FloatArray] = field(default_factory=dict, init=False, repr=False)
+    _orders: dict[tuple[str, int], ComplexOrders] = field(default_factory=dict, init=False, repr=False)
+
+    @classmethod
+    def of(cls, pair: GearPair, motion: xr.Dataset, mesh_cycles: int, recurrence: int) -> MotionCurves:
+        """Return the curves of a dataset at equal steps over ``mesh_cycles``."""
+        return cls(pair, plain(motion), mesh_cycles, recurrence)
+
+    @property
+    def motion(self) -> xr.Dataset:
+        """The motion as a dataset, which takes longer than its arrays."""
+        return self.plain.dataset
 
     def has(self, quantity: str) -> bool:
         """Return whether the motion contains a quantity."""
-        return quantity_of(quantity).variable in self.motion
+        return quantity_of(quantity).variable in self.plain.values
 
     def samples(self, quantity: str) -> FloatArray:
         """Return a quantity at the times of the motion, (n,), or (pair, n) for a quantity of tooth pairs."""
+        if quantity not in self._samples:
+            self._samples[quantity] = self._computed(quantity)
+        return self._samples[quantity]
+
+    def _computed(self, quantity: str) -> FloatArray:
+        """A quantity at the times of the motion."""
         kind = quantity_of(quantity)
         if not self.has(quantity):
             allowed = ", ".join(name for name in QUANTITIES if self.has(name))
             raise refuse("channel", quantity, allowed, "Leave the channel out.")
-        values = np.asarray(self.motion[kind.variable].to_numpy(), dtype=np.float64)
+        values = np.asarray(self.plain.values[kind.variable], dtype=np.float64)
         if kind.summed:
             values = values.sum(axis=0)
         if kind.derivative:
@@ -81,8 +100,8 @@ class MotionCurves:
             values = np.abs(values)
         if quantity in DISPLACEMENTS_TOO_MUCH:
             share = DISPLACEMENTS_TOO_MUCH[quantity]
-            values = values + share.pinion * self.motion["x_p"].to_numpy()
-            values = values + share.gear * self.motion["x_g"].to_numpy()
+            values = values + share.pinion * self.plain.values["x_p"]
+            values = values + share.gear * self.plain.values["x_g"]
         return values
 
     def _mistaken(self, quantity: str, values: FloatArray) -> FloatArray:
@@ -90,14 +109,14 @@ class MotionCurves:
         g = self.pair.geometry
         if quantity == "dte less the static one":  # prescribed contact of perfect teeth: F/K
             force = self.pair.operating.pinion_torque / g.base_radius_pinion
-            return np.asarray(self.motion["dte"].to_numpy() - force / values)
+            return np.asarray(self.plain.values["dte"] - force / values)
         if quantity == "mesh force of the springs":
-            return np.asarray(self.motion["dte"].to_numpy() * values)
+            return np.asarray(self.plain.values["dte"] * values)
         if quantity == "dte on the pitch circles":
-            displaced = self.motion["x_p"].to_numpy() - self.motion["x_g"].to_numpy()
+            displaced = self.plain.values["x_p"] - self.plain.values["x_g"]
             return np.asarray((values - displaced) / np.cos(g.operating_pressure_angle) + displaced)
         if quantity.startswith("resultant"):
-            across = self.motion[f"bearing_force_y_{quantity[-1]}"].to_numpy()
+            across = self.plain.values[f"bearing_force_y_{quantity[-1]}"]
             return np.asarray(np.hypot(values, across))
         if quantity == "friction without signs":
             return np.asarray(np.abs(values).sum(axis=0))
@@ -107,13 +126,13 @@ class MotionCurves:
         if quantity in ("whole load of the mesh", "share of the static load", "load times its share"):
             return self._by_share(quantity, values)
         if quantity == "equal share of the load":
-            touches = self.motion["contact"].to_numpy() > 0
+            touches = self.plain.values["contact"] > 0
             return np.asarray(touches * values.sum(axis=0) / np.maximum(touches.sum(axis=0), 1))
         return values
 
     def _by_share(self, quantity: str, loads: FloatArray) -> FloatArray:
         """What the load of a tooth pair is mistaken for, by its share of the mesh force (pairs, n) [N]."""
-        touches = self.motion["contact"].to_numpy() > 0
+        touches = self.plain.values["contact"] > 0
         total = loads.sum(axis=0)
         if quantity == "whole load of the mesh":
             return np.asarray(touches * total)
@@ -121,18 +140,33 @@ class MotionCurves:
         static = self.pair.operating.pinion_torque / self.pair.geometry.base_radius_pinion
         return np.asarray(share * (static if quantity == "share of the static load" else loads))
 
+    def thinned(self, samples: int) -> MotionCurves:
+        """Return the motion with so many samples in a mesh cycle, where it has a multiple of them."""
+        step, rest = divmod(self.plain.time.size, samples * self.mesh_cycles)
+        if step < 2 or rest:
+            return self
+        every = slice(None, None, step)
+        values = {name: array[..., every] for name, array in self.plain.values.items()}
+        thin = replace(
+            self.plain,
+            time=self.plain.time[every],
+            values=values,
+            make_dataset=lambda: self.motion.isel(time=every),
+        )
+        return MotionCurves(self.pair, thin, self.mesh_cycles, self.recurrence)
+
     def mean_cycle(self) -> MotionCurves:
         """Return the motion averaged over the mesh cycles of its period."""
         if self.mesh_cycles == 1:  # a copy of every variable would take longer than the motion
             return self
-        size = self.motion.sizes["time"] // self.mesh_cycles
+        size = self.plain.time.size // self.mesh_cycles
         first = self.motion.isel(time=slice(0, size))
         for name, variable in self.motion.data_vars.items():
             if "time" in variable.dims and name != "position":
                 values = variable.to_numpy()[..., : self.mesh_cycles * size]
                 by_cycle = values.reshape(*values.shape[:-1], self.mesh_cycles, size)
                 first[name] = first[name].copy(data=by_cycle.mean(axis=-2))
-        return MotionCurves(self.pair, first, 1, self.recurrence)
+        return MotionCurves.of(self.pair, first, 1, self.recurrence)
 
     def age(self, cycles: ArrayLike, label: str) -> FloatArray:
         """Return the mesh cycles since the labelled pair was last at A; negative before A.
@@ -150,7 +184,7 @@ class MotionCurves:
         With loaded contact pairs touch before A and behind D, so the last number is negative.
         """
         g = self.pair.geometry
-        place = self.motion["position"].to_numpy()[:, 0] - g.L_XA
+        place = self.plain.values["position"][:, 0] - g.L_XA
         return np.asarray(np.round(place / g.base_pitch), dtype=np.int64)
 
     @property
@@ -166,11 +200,11 @@ class MotionCurves:
         if self.pair.mesh.contact == "loaded":
             return float(self.ahead.min()), float(self.ahead.max()) + 1.0
         g = self.pair.geometry
-        touches = self.motion["contact"].to_numpy() > 0
+        touches = self.plain.values["contact"] > 0
         if not touches.any():
             return 0.0, g.contact_ratio
-        step = self.mesh_cycles / self.motion.sizes["time"]
-        cycles = (self.motion["position"].to_numpy()[touches] - g.L_XA) / g.base_pitch
+        step = self.mesh_cycles / self.plain.time.size
+        cycles = (self.plain.values["position"][touches] - g.L_XA) / g.base_pitch
         first, last = float(cycles.min()), float(cycles.max()) + step
         first = first if abs(first) > _OTHER_END * step else 0.0
         return first, last if abs(last - g.contact_ratio) > _OTHER_END * step else g.contact_ratio
@@ -193,7 +227,10 @@ class MotionCurves:
 
     def orders(self, quantity: str, mesh_orders: int) -> ComplexOrders:
         """Return the complex orders of a quantity of the whole mesh, up to a mesh order."""
-        return orders_of_period(self.samples(quantity), mesh_orders, self.mesh_cycles)
+        key = quantity, mesh_orders
+        if key not in self._orders:
+            self._orders[key] = orders_of_period(self.samples(quantity), mesh_orders, self.mesh_cycles)
+        return self._orders[key]
 
     def _life(self, quantity: str) -> _Life:
         """Quantity of a tooth pair over its life. A tooth pair n pitches ahead is n mesh cycles after A."""
@@ -222,5 +259,5 @@ class MotionCurves:
             raise refuse("channel", kind.name, allowed, "Leave the channel out; give mesh_force.")
         bodies = bodies_of(self.pair)
         if kind.name.endswith("_p"):
-            return float(self.motion.attrs["pinion_torque"]) - bodies.inertia_pinion * acceleration
-        return float(self.motion.attrs["brake_torque"]) + bodies.inertia_gear * acceleration
+            return float(self.plain.attributes["pinion_torque"]) - bodies.inertia_pinion * acceleration
+        return float(self.plain.attributes["brake_torque"]) + bodies.inertia_gear * acceleration

@@ -44,7 +44,7 @@ def lumped_motion(
     """
     prediction = predicted(pair, samples)
     again = recurrence or pair.pinion.teeth
-    return MotionCurves(pair, prediction.cycle, prediction.mesh_cycles, again)
+    return MotionCurves.of(pair, prediction.cycle, prediction.mesh_cycles, again)
 
 
 def multibody_motion(pair: GearPair, lumped_curves: MotionCurves) -> MotionCurves | None:
@@ -64,5 +64,5 @@ def multibody_motion(pair: GearPair, lumped_curves: MotionCurves) -> MotionCurve
             effects={"clearance": True} if lost else None,
             supports="springs",
         )
-        return MotionCurves(pair, motion, 1, lumped_curves.recurrence)
+        return MotionCurves.of(pair, motion, 1, lumped_curves.recurrence)
     return None

@@ -34,14 +34,15 @@ from validation.check.curve_orders import BIN, ChannelOrders
 from validation.check.explanations.cause import Cause, Kind, Variant
 from validation.check.explanations.design_inputs import has_relief
 from validation.check.explanations.misreadings import causes_of_channels
-from validation.check.explanations.physics import Physics, motion_of
+from validation.check.explanations.physics import SAMPLES, Physics, motion_of
 from validation.check.explanations.reading import Reading, read, steps_of
 from validation.check.explanations.registry import EXPLANATIONS
 from validation.check.mesh_frequency import SAME
-from validation.check.misfit import ChannelMisfit, Misfit
+from validation.check.misfit import Misfit, residual_of
 from validation.check.motion_curves import MotionCurves
 from validation.check.problem import Problem
 from validation.check.steps import Step
+from validation.check.two_steps import Effect, promising_pairs
 
 #: A change of the equations that takes something else away counts as this much worse, for each such thing.
 _SIDE_EFFECT = 1.25
@@ -62,6 +63,8 @@ OF_FREQUENCY = ("time axis", "speed of the curves")
 _MAY_BE_OF_FREQUENCY = "driving gear"
 #: Steps that are tried behind a step that changes our motion: those that promise most by their effect alone.
 _PROMISING = 30
+#: Pairs of steps that are tried at once: those that promise most by the effects of both alone.
+_PAIRS = 24
 #: Intervals of the grid of a free parameter that are tried.
 _INTERVALS = 2
 #: Free parameters that are searched by Brent's method where Gauss-Newton steps leave a misfit above this,
@@ -71,6 +74,8 @@ _STALLED = 0.02
 _TRIALS = 14
 #: A change from cycle to cycle above this share of the motion is no noise but a motion that fades.
 _NOT_SETTLED = 0.01
+#: Change of the misfit by fewer samples of our motion up to which the trials have these samples.
+_THINNED = 0.02
 #: Readings behind which every other cause is tried: those that leave the smallest misfit.
 _HIDING_READINGS = 6
 #: Readings that can hide every other cause.
@@ -172,8 +177,27 @@ class Search:
         self._tried_causes = self.causes
         self._start = time.process_time()
         self.run_until(1.0)
+        self._samples, thin = self._least_samples()
+        # With the samples of the trials, so that another reading of the curves has no advantage.
+        self._know(thin)
+
+    def _least_samples(self) -> tuple[int, MotionCurves]:
+        """Samples in a mesh cycle of the trials, and our motion with these samples.
+
+        The force of a damper jumps where teeth meet: at low speed its orders need more samples than others.
+        """
+        residual = residual_of(self.problem.misfit)
+        for samples in (SAMPLES, 2 * SAMPLES):
+            thin = self.problem.motion.thinned(samples)
+            change = residual_of(self.problem.misfit_with(thin)) - residual
+            if np.linalg.norm(change) < _THINNED:
+                return samples, thin
+        return 4 * SAMPLES, self.problem.motion
+
+    def _know(self, motion: MotionCurves) -> None:
+        """Take a motion as that of the model without changes."""
         start = Variant(self.problem.pair)
-        self.motions[start.pair, start.physics] = self.problem.motion
+        self.motions[start.pair, start.physics] = motion
 
     def start(self) -> Path:
         """Return the path without steps."""
@@ -201,6 +225,8 @@ class Search:
             variant = Variant(self.problem.pair)
             side_effects = 0
             for step in steps:
+                if step.choice is None and not step.cause.applies(self.problem, variant):
+                    return None  # a step before it was left out, or another one
                 before, variant = variant, step.of(variant)
                 side_effects += _side_effects(step.cause, before, variant)
         except SpurcheckError:
@@ -237,7 +263,9 @@ class Search:
                 with warnings.catch_warnings(), typed_errors():
                     warnings.simplefilter("ignore")
                     again = self.problem.curves.recurrence
-                    self.motions[key] = motion_of(pair, physics, again, settles=self._settles)
+                    self.motions[key] = motion_of(
+                        pair, physics, again, settles=self._settles, samples=self._samples
+                    )
             except SpurcheckError:
                 self.motions[key] = None
         return self.motions[key]
@@ -271,10 +299,13 @@ class Search:
     def floor(self, limit: float) -> float:
         """Return the misfit below which a difference says nothing.
 
-        This is the error of our motion, with the noise of the curves and a fiftieth of the limit.
+        This is the error of our motion, with that of the samples of the trials, the noise of the curves and a
+        fiftieth of the limit.
         """
-        error = self.problem.motion.motion.attrs.get("error_estimate", 0.0)
-        return float(np.sqrt(noise_of(self.problem) ** 2 + error**2 + (limit / 50.0) ** 2))
+        error = self.problem.motion.plain.attributes.get("error_estimate", 0.0)
+        thinned = self.start().trial.residual - residual_of(self.problem.misfit)
+        squares = noise_of(self.problem) ** 2 + error**2 + float(thinned @ thinned)
+        return float(np.sqrt(squares + (limit / 50.0) ** 2))
 
     def expand(self, path: Path) -> list[Path]:
         """Return the paths with one step more, each fitted; the misfit is smallest first.
@@ -289,7 +320,7 @@ class Search:
     @property
     def _settles(self) -> bool:
         """Whether motions are looked for by runs that settle: only where that of the pair was found so."""
-        return bool(self.problem.motion.motion.attrs.get("origin") == Origin.SETTLED.value)
+        return bool(self.problem.motion.plain.attributes.get("origin") == Origin.SETTLED.value)
 
     @property
     def spent(self) -> bool:
@@ -305,6 +336,8 @@ class Search:
         """Let the few trials that tell a path have a motion each, although the budget is spent."""
         self._end = math.inf
         self.most_motions = None
+        self._know(self.problem.motion)
+        self._trials.clear()
 
     def _with_one_step_more(self, path: Path) -> list[Path]:
         screened = self._screened(path)
@@ -340,6 +373,54 @@ class Search:
             pass
         screened.sort(key=lambda one: one[0])
         return self._archived([self.fitted(one) for _, one in screened[:_REFINED]])
+
+    def with_two_steps(self, path: Path) -> list[Path]:
+        """Return paths with two steps more, those that promise most by the effects of both steps alone.
+
+        Two mistakes can hide each other: none of both then lowers the misfit by much alone.
+        """
+        found = []
+        with suppress(BudgetSpentError):
+            for one, other in promising_pairs(path.trial.residual, self._effects(path), _PAIRS):
+                again = self._behind((*path.steps, one), other)
+                trial = None if again is None else self.trial((*path.steps, one, again))
+                if again is not None and trial is not None:
+                    found.append(Path((*path.steps, one, again), trial))
+        found.sort(key=lambda one: one.score(0.0))
+        fitted = [self.fitted(one) for one in found[:_REFINED]]
+        return self._archived([one for one in fitted if all(step.changes for step in one.steps)])
+
+    def _behind(self, steps: Sequence[Step], step: Step) -> Step | None:
+        """A step that was chosen alone, behind other steps; None: it does not apply there."""
+        try:
+            variant = Variant(self.problem.pair)
+            for one in steps:
+                variant = one.of(variant)
+            if step.choice is None:
+                return step if step.cause.applies(self.problem, variant) else None
+            choices = step.cause.choices(self.problem, variant)
+        except SpurcheckError:
+            return None
+        return next((Step(step.cause, one) for one in choices if one.label == step.choice.label), None)
+
+    def _effects(self, path: Path) -> list[Effect]:
+        """What each step that was tried behind a path does to the residual, without those that do nothing."""
+        effects = []
+        nothing = np.zeros_like(path.trial.residual)
+        for step in self._fixed_steps(path):
+            trial = self.trial((*path.steps, step))
+            if trial is not None and step.choice is not None and not step.choice.vague:
+                effects.append(Effect(step, trial.residual - path.trial.residual, nothing))
+        for cause in self._free_causes(path):
+            places = [(0.0, nothing)]
+            for value in cause.grid:
+                trial = self.trial((*path.steps, Step(cause, None, cause.coordinate(value))))
+                if trial is not None:
+                    places.append((cause.coordinate(value), trial.residual - path.trial.residual))
+            places.sort(key=lambda place: place[0])
+            for (x0, one), (x1, other) in itertools.pairwise(places):
+                effects.append(Effect(Step(cause, None, x0), one, other - one, x1 - x0))
+        return [one for one in effects if one.start.any() or one.along.any()]
 
     def _screened(self, path: Path) -> list[tuple[float, Path]]:
         """Paths with one step more, not fitted, and the misfit that each promises; the smallest first."""
@@ -588,24 +669,6 @@ def noise_of(problem: Problem) -> float:
     return float(np.sqrt(np.mean(squares)))
 
 
-def residual_of(misfit: Misfit) -> FloatArray:
-    """Return the residual, whose root sum square is the value of the misfit."""
-    groups = [_group(row) for row in misfit.channels]
-    parts = []
-    for row, group in zip(misfit.channels, groups, strict=True):
-        difference = (row.channel.orders.values - row.ours.values) / row.scale
-        mean = (row.channel.orders.mean - row.ours.mean) / row.static if row.compares_mean else 0.0
-        part = np.concatenate([difference.real, difference.imag, [mean]])
-        parts.append(part / np.sqrt(len(set(groups)) * groups.count(group)))
-    return np.asarray(np.concatenate(parts), dtype=np.float64)
-
-
-def _group(row: ChannelMisfit) -> str:
-    """Channels that count as one: all tooth pairs of a quantity; else the channel alone."""
-    one = row.channel.channel
-    return f"pairs: {one.quantity}" if one.tooth_pair else one.name
-
-
 def _without(residual: FloatArray, taken_up: FloatArray) -> float:
     """Size of a residual without the directions that are taken up."""
     return float(np.linalg.norm(residual - taken_up @ (taken_up.T @ residual)))
@@ -625,4 +688,4 @@ def without_step(path: Path, number: int) -> tuple[Step, ...]:
     return (*path.steps[:number], *path.steps[number + 1 :])
 
 
-__all__ = ["BudgetSpentError", "Motions", "Path", "Search", "Step", "Trial", "residual_of", "without_step"]
+__all__ = ["BudgetSpentError", "Motions", "Path", "Search", "Step", "Trial", "without_step"]

@@ -567,7 +567,7 @@ class Results:
         self.stage("what would explain the record")
         prediction = self.prediction
         again = self.record.recurrence or prediction.pair.pinion.teeth
-        motion = MotionCurves(prediction.pair, prediction.cycle, prediction.mesh_cycles, again)
+        motion = MotionCurves.of(prediction.pair, prediction.cycle, prediction.mesh_cycles, again)
         problem = Problem.of(prediction.pair, self.record, motion)
         ladder = climb(problem, limit=LIMIT, budget=self.effort.explain_seconds)
         return RecordExplanations(problem, ladder, LIMIT)

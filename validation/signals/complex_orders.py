@@ -63,6 +63,8 @@ class ComplexOrders:
     def shifted(self, shift: float) -> ComplexOrders:
         """Return the signal ``shift`` cycles later in its period, with the covariance of the new parts."""
         turn = np.exp(2j * np.pi * self.orders * shift)
+        if not self.covariance.any():
+            return replace(self, values=self.values * turn)
         cosines = np.diag(turn.real)
         sines = np.diag(turn.imag)
         turning = np.block([[cosines, -sines], [sines, cosines]])

@@ -79,7 +79,7 @@ def measured_points(pair: GearPair, record: Curves, *, bins: int = 48) -> xr.Dat
     """
     at_record = record.at(pair.with_({"friction.law": LAW}))
     again = record.recurrence or pair.pinion.teeth
-    motion = MotionCurves(at_record, steady_state(at_record, samples_per_cycle=1024), 1, again)
+    motion = MotionCurves.of(at_record, steady_state(at_record, samples_per_cycle=1024), 1, again)
     problem = Problem.of(at_record, record, motion)
     points = overlay(problem, bins=bins)
     points["quantity"] = ("channel", [channel.quantity for channel in record.channels])

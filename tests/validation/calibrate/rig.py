@@ -32,7 +32,7 @@ def rig_record(
     """A record of the motion of a pair: ``noise`` is over the peak to peak of each channel."""
     at = truth.with_({"operating.pinion_speed": rpm})
     prediction = predicted(at.healthy)
-    motion = MotionCurves(at, prediction.cycle, prediction.mesh_cycles, at.pinion.teeth)
+    motion = MotionCurves.of(at, prediction.cycle, prediction.mesh_cycles, at.pinion.teeth)
     u = np.arange(cycles * per_cycle) / per_cycle
     rng = np.random.default_rng(seed)
     channels = []

@@ -102,6 +102,7 @@ FIXED = {
     "bearings in the mesh stiffness": ("unlike", None),
     "input of the friction law": ("rough", "half of the slide-to-roll ratio"),
     "exponent of the contact force": ("unlike", "exponent 1.5"),
+    "long steps": ("unlike", "implicit Euler, 421 a cycle"),
 }
 #: Further fixed values of these causes: name of the cause, label.
 FURTHER = (

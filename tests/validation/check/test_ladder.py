@@ -10,13 +10,15 @@ from tests.unlike_pairs import unlike_pair
 from tests.validation.check.motions import lumped_motion
 from tests.validation.check.sampled_motions import COULOMB, LIMIT, sampled
 from tests.validation.check.wrong_readings import changed
+from validation.check import reference
 from validation.check.curves import Channel
 from validation.check.explanations.cause import Variant
-from validation.check.explanations.physics import Physics, motion_of
+from validation.check.explanations.physics import SAMPLES, Physics, motion_of
 from validation.check.explanations.registry import EXPLANATIONS
 from validation.check.ladder import climb
+from validation.check.misfit import residual_of
 from validation.check.problem import Problem
-from validation.check.search import Path, Search, Step, residual_of
+from validation.check.search import Path, Search, Step
 from validation.check.words import ladder_words
 
 CHANNELS = ("dte", "x_p", "y_g", "mesh_force", "bearing_force_y_g")
@@ -261,3 +263,43 @@ def test_the_noise_of_curves_is_measured(pair):
     noisy = changed(curves, CHANNELS, lambda v: v + 0.3 * np.std(v) * random.standard_normal(v.size))
     assert clean < 1.2 * LIMIT / 50.0
     assert Search(Problem.of(pair, replace(noisy), motion), 1.0).floor(LIMIT) > 5.0 * clean
+
+
+def test_readings_are_tried_with_the_samples_of_other_trials(pair):
+    """Finer samples would be an advantage of readings. Their ladder has the finest motion in the end."""
+    fine = reference.lumped_motion(pair, samples=4 * SAMPLES)
+    curves = changed(sampled(fine, CHANNELS), ("x_p",), lambda v: 1e3 * v)
+    problem = Problem.of(pair, curves, fine)
+    assert Search(problem, 600.0).start().trial.motion.plain.time.size == SAMPLES
+    causes = [EXPLANATIONS[name] for name in ("unit of a channel", "mesh stiffness")]
+    ladder = climb(problem, limit=LIMIT, budget=600.0, causes=causes)
+    assert names(ladder) == ["unit of a channel"]
+    assert ladder.motion.plain.time.size == 4 * SAMPLES
+    assert ladder.motion.motion["dte"].to_numpy() == pytest.approx(fine.samples("dte"), rel=1e-12)
+
+
+def test_a_step_that_needs_another_one_has_no_trial_without_it(pair):
+    """The end of the parabola is an input of the parabola alone: behind another model it is no step."""
+    parabola = pair.with_({"mesh.stiffness": {"model": "parabolic"}})
+    motion = lumped_motion(parabola)
+    search = Search(Problem.of(parabola, sampled(motion, CHANNELS), motion), 600.0)
+    model = EXPLANATIONS["stiffness model"]
+    start = Variant(parabola)
+    choice = next(c for c in model.choices(search.problem, start) if c.label == "rectangular")
+    end = EXPLANATIONS["ends of the parabola"]
+    assert search.trial((Step(end, None, end.coordinate(end.grid[0])),)) is not None
+    assert search.trial((Step(model, choice), Step(end, None, end.coordinate(end.grid[0])))) is None
+
+
+def test_trials_have_more_samples_where_the_force_jumps(pair):
+    """The force of a damper jumps where teeth meet: at low speed its orders need more samples."""
+    slow = pair.with_({"mesh.damping_ratio": 0.3, "operating.pinion_speed": "400 rpm"})
+    sizes = {}
+    for name, turning in (("slow", slow), ("fast", pair)):
+        fine = reference.lumped_motion(turning, samples=4 * SAMPLES)
+        search = Search(Problem.of(turning, sampled(fine, ("mesh_force",)), fine), 600.0)
+        other = search.trial((Step(EXPLANATIONS["torque"], None, 0.1),))
+        sizes[name] = [search.start().trial.motion.plain.time.size, other.motion.plain.time.size]
+        error = search.start().trial.residual - residual_of(search.problem.misfit)
+        assert search.floor(LIMIT) > np.linalg.norm(error)
+    assert sizes == {"slow": [4 * SAMPLES] * 2, "fast": [SAMPLES] * 2}

@@ -23,9 +23,9 @@ from lumped.mesh.records import Records
 from lumped.model.equations import THETA_G, THETA_P, X_G, X_P, Y_G, Y_P, Structure, structure
 from lumped.model.mesh_cycle import MeshCycle
 from lumped.model.periodic_system import LTVSystem, supports_of
-from lumped.model.results import a_pair_pulls, dataset
+from lumped.model.results import LOAD_NOISE, PlainMotion, plain_linear
 from lumped.model.revolution_motion import plain_motion
-from lumped.model.steady import UNSTABLE, periodic_solution, sample_times
+from lumped.model.steady import UNSTABLE, PeriodicSolution, periodic_solution, sample_times
 from lumped.model.tooth_laws import ToothLaws
 from lumped.model.unilateral_motion import Shooting, motion_of_shooting
 from lumped.path_function import PathFunction
@@ -78,11 +78,12 @@ from validation.check.explanations.pair_laws import (
     with_stiffness,
     with_variation,
 )
+from validation.check.explanations.step_schemes import Scheme, Stepped, stepped
 from validation.check.motion_curves import MotionCurves
 from validation.check.reference import lumped_motion
 
 #: Samples in a mesh cycle of an altered motion.
-_SAMPLES = 512
+SAMPLES = 512
 _SAMPLES_OF_CONTACT = 256
 #: Altered equations whose linear motion grows by more than this factor in a mesh cycle have no motion.
 _GROWS = 1.2
@@ -167,6 +168,7 @@ class Physics:
     excitation : a constant mesh stiffness that a transmission error excites
     late_force : mesh cycles by which the forces of the teeth come late
     contact : another contact force
+    scheme, steps : scheme of an integrator, and its steps in a mesh cycle; empty: steps of no length
     bearings : "rigid" and the like: without these translations, bearings carry the mesh force; "left out": a
         torsional model
     """
@@ -218,6 +220,8 @@ class Physics:
     excitation: Excitation = ""
     late_force: float = 0.0
     contact: ContactForce = ""
+    scheme: Scheme = ""
+    steps: int = 0
     bearings: Bearings = "elastic"
 
     @property
@@ -283,7 +287,12 @@ UNALTERED = Physics()
 
 
 def motion_of(
-    pair: GearPair, physics: Physics, recurrence: int | None, *, settles: bool = True
+    pair: GearPair,
+    physics: Physics,
+    recurrence: int | None,
+    *,
+    settles: bool = True,
+    samples: int = SAMPLES,
 ) -> MotionCurves:
     """Return the motion of a pair with alterations of the model.
 
@@ -293,6 +302,7 @@ def motion_of(
     physics : alterations of the model
     recurrence : as of ``lumped_motion``
     settles : whether a run settles where no stable motion is near the linear one; such a run takes seconds
+    samples : samples in a mesh cycle; another contact force has fewer
 
     Raises
     ------
@@ -301,7 +311,7 @@ def motion_of(
     """
     prescribed = pair.mesh.contact == "prescribed"
     if pair.healthy is not pair and physics == UNALTERED:
-        return lumped_motion(pair, recurrence)
+        return lumped_motion(pair, recurrence, samples=samples)
     if pair.healthy is not pair or (physics.of_equations and pair.shafts is not None):
         raise NumericalError("This alteration needs like teeth; of the equations of motion, springs too.")
     if physics.of_error and not prescribed:
@@ -313,15 +323,17 @@ def motion_of(
     again = recurrence or pair.pinion.teeth
     system = altered_system(pair, physics)
     if physics.contact:
-        return MotionCurves(
+        return MotionCurves.of(
             pair, contact_motion(system, physics.contact, provenance(pair), _SAMPLES_OF_CONTACT), 1, again
         )
     if physics.pulling or prescribed:
-        linear = _linear_motion(system, physics)
+        linear = _linear_motion(system, physics, samples)
         if linear is not None:
             return MotionCurves(pair, linear, 1, again)
     if physics.pulling:
         raise NumericalError("The linear motion is unstable.")
+    if physics.scheme:
+        raise NumericalError("Long steps need prescribed contact that is not lost; they are stable.")
     if physics.late_force:
         raise NumericalError("Forces that come late make the motion unstable, or teeth part.")
     if physics.course in STATIC_LOAD:
@@ -330,13 +342,13 @@ def motion_of(
         start = periodic_solution(system, np.zeros(1), estimate_error=False)
         if start.spectral_radius > _GROWS:
             raise NumericalError("The motion of the altered equations grows without bound.")
-    shooting = Shooting.of_laws(pair, system, AlteredLaws(pair, physics), _SAMPLES)
+    shooting = Shooting.of_laws(pair, system, AlteredLaws(pair, physics), samples)
     motion = motion_of_shooting(shooting, settles=settles)
     if motion.spectral_radius > UNSTABLE:
         raise NumericalError("The periodic motion is unstable.")
-    origin = partial(provenance, pair, samples_per_cycle=_SAMPLES, contact="unilateral")
-    labelled = plain_motion(motion, origin).dataset
-    return MotionCurves(pair, _with_bearing_forces(labelled, physics, system), motion.period, again)
+    origin = partial(provenance, pair, samples_per_cycle=samples, contact="unilateral")
+    plain = _with_bearing_forces(plain_motion(motion, origin), physics, system)
+    return MotionCurves(pair, plain, motion.period, again)
 
 
 def altered_system(pair: GearPair, physics: Physics) -> LTVSystem:
@@ -519,38 +531,51 @@ class AlteredLaws(ToothLaws):
         return laws
 
 
-def _linear_motion(system: LTVSystem, physics: Physics) -> xr.Dataset | None:
+def _linear_motion(system: LTVSystem, physics: Physics, samples: int) -> PlainMotion | None:
     """The linear motion. None: the motion is unstable, or teeth pull and must not."""
-    times = sample_times(system.period, _SAMPLES)
-    solution = periodic_solution(system, times, estimate_error=False)
+    times = sample_times(system.period, samples)
+    solution: Stepped | PeriodicSolution
+    if physics.scheme:
+        solution = stepped(system, physics.scheme, physics.steps, samples)
+    else:
+        solution = periodic_solution(system, times, estimate_error=False)
     if solution.spectral_radius > UNSTABLE:
         return None
     torques = {"pinion_torque": solution.pinion_torque, "brake_torque": solution.brake_torque}
-    motion = dataset(system, times, solution.states, provenance(system.pair) | torques)
-    if not physics.pulling and a_pair_pulls(system.pair, motion):
+    motion = plain_linear(system, times, solution.states, torques, partial(provenance, system.pair))
+    force = system.pair.operating.pinion_torque / system.pair.geometry.base_radius_pinion
+    if not physics.pulling and motion.values["normal_load"].min() < -LOAD_NOISE * force:
         return None
     if isinstance(system, StaticFriction):
         friction = static_friction(system, system.cycle.sample(times))
-        motion["friction_force"] = motion["friction_force"].copy(data=friction)
+        motion = _with_values(motion, {"friction_force": friction})
     return _with_bearing_forces(motion, physics, system)
 
 
-def _with_bearing_forces(motion: xr.Dataset, physics: Physics, system: LTVSystem) -> xr.Dataset:
+def _with_values(motion: PlainMotion, values: Mapping[str, FloatArray]) -> PlainMotion:
+    """The motion with other values of some variables, in its dataset too."""
+
+    def make_dataset() -> xr.Dataset:
+        return motion.dataset.assign({name: motion.dataset[name].copy(data=values[name]) for name in values})
+
+    return replace(motion, values={**motion.values, **values}, make_dataset=make_dataset)
+
+
+def _with_bearing_forces(motion: PlainMotion, physics: Physics, system: LTVSystem) -> PlainMotion:
     """The motion of a model without translations, with the forces that its bearings carry.
 
     Rigid bearings carry the forces of the mesh on their gear. A torsional model has no bearing forces.
     """
     if physics.bearings == "elastic":
         return motion
-    load = motion["normal_load"].to_numpy().sum(axis=0)
-    friction = motion["friction_force"].to_numpy().sum(axis=0)
+    load = motion.values["normal_load"].sum(axis=0)
+    friction = motion.values["friction_force"].sum(axis=0)
     true = structure(system.pair)
     rigid = 0.0 if physics.bearings == "left out" else 1.0
-    motion = motion.copy()
+    forces = {}
     names = {X_P: "x_p", X_G: "x_g", Y_P: "y_p", Y_G: "y_g"}
     for place in _HELD[physics.bearings]:
         name = names[place]
         force = -rigid * (true.normal[place] * load + true.friction_arm[place, 0] * friction)
-        variable = f"bearing_force_{name}"
-        motion[variable] = motion[variable].copy(data=force)
-    return motion
+        forces[f"bearing_force_{name}"] = force
+    return _with_values(motion, forces)

@@ -142,7 +142,7 @@ def check_record(record: Curves, pair: GearPair) -> None:
 def mean_motion(prediction: Prediction, recurrence: int | None = None) -> MotionCurves:
     """Return the motion averaged over the mesh cycles of its period."""
     again = recurrence or prediction.pair.pinion.teeth
-    return MotionCurves(prediction.pair, prediction.cycle, prediction.mesh_cycles, again).mean_cycle()
+    return MotionCurves.of(prediction.pair, prediction.cycle, prediction.mesh_cycles, again).mean_cycle()
 
 
 class _Signals(NamedTuple):
