@@ -1,7 +1,7 @@
 """What the comparison says of the wrong models: the truth beside the ladder of explanations.
 
     python -m benchmarks.foreign_models.ladder first|second|third|fourth|fifth|sixth|seventh|eighth|ninth
-        [words]
+        |tenth [words]
 
 A reader decides whether the first explanation is the truth in other words: the registry has no names of the
 mistakes, and the mistakes have no names of the registry.
@@ -23,6 +23,7 @@ from benchmarks.foreign_models.ninth import judging as ninth_set
 from benchmarks.foreign_models.second import held_back as second_set
 from benchmarks.foreign_models.seventh import judging as seventh_set
 from benchmarks.foreign_models.sixth import judging as sixth_set
+from benchmarks.foreign_models.tenth import judging as tenth_set
 from benchmarks.foreign_models.third import judging as third_set
 from validation.check import check
 
@@ -36,6 +37,7 @@ SETS: Mapping[str, Callable[[str], Sequence[Case]]] = {
     "seventh": seventh_set,
     "eighth": eighth_set,
     "ninth": ninth_set,
+    "tenth": tenth_set,
 }
 
 
