@@ -237,7 +237,7 @@ def write_elastic_loads(
             write_gap_unless_apart(pair, approach, line, law, contact)
             if not law.coupled:
                 single_load(pair.stiffness, law, contact)
-    if law.coupled and not law.prescribed:
+    if law.coupled:
         coupled_loads(pairs, law, coupling, matrix, contacts)
 
 

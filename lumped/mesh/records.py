@@ -104,7 +104,7 @@ class ContactLaw(NamedTuple):
     linear_below : N_1 [N]
     converged : relative change that ends the iteration of the loads: QUICK or EXACT
     full_damper : load above which the whole damper of a pair acts [N]
-    coupled : whether the load of a pair moves its neighbours
+    coupled : whether the load of a pair moves its neighbours; never with prescribed contact
     apart_below : compression below which no neighbour can bring a pair into contact, 0 or less [m]
     prescribed : prescribed contact: every pair touches inside its window of the path, without tip corners
     radius_pinion, radius_gear : base radii [m]

@@ -246,7 +246,7 @@ def test_what_is_no_batch_is_refused(systems, field, word) -> None:
 
 def test_a_batch_that_grows_without_end_says_where() -> None:
     def growing(points):
-        return PeriodicSystems(lambda phases: np.full((2, phases.size, 1, 1), 900.0), 1.0)
+        return PeriodicSystems(lambda phases: np.full((3, phases.size, 1, 1), 900.0), 1.0)
 
-    with pytest.raises(NumericalError, match="between a = 1 and a = 2: a state grows"):
-        scan(growing, {"a": [1.0, 2.0]}, batched=True)
+    with pytest.raises(NumericalError, match="between a = 1 and a = 4: a state grows"):
+        scan(growing, {"a": [1.0, 2.0, 4.0]}, batched=True)

@@ -119,3 +119,24 @@ def test_a_high_harmonic_is_proven_where_its_own_steps_are_short():
     result = monodromy(from_second_order(1.0, 0.1, PeriodicMatrix(100.0, (wave, 20.0)), 0.3))
     assert result.spectral_radius == pytest.approx(np.exp(-0.015), abs=result.error + 1e-15)
     assert result.error < 1e-11
+
+
+def test_bounds_hold_with_a_poor_inverse_of_M_whose_errors_pass_from_row_to_row(monkeypatch):
+    """An inverse W = (I - G) M^-1 leaves the error (I - G)^-1 R of X, with the residual R = W (K - M X).
+
+    Each of the three corrections multiplies the error by G, so it is G^3 M^-1 K. K is chosen so that R is the
+    unit matrix: G then brings the residual of row 0 into row 1, where no residual shows it.
+    """
+    M = np.array([[1.0, 0.5], [0.0, 1.0]])  # not symmetric: the coordinates stay
+    G = np.array([[0.2, 0.0], [0.2, 0.2]])
+    inverse = (np.eye(2) - G) @ np.array([[1.0, -0.5], [0.0, 1.0]])
+    lacking = np.linalg.solve(np.eye(2) - G, np.eye(2))
+    K = M @ np.linalg.solve(np.linalg.matrix_power(G, 3), lacking)
+    monkeypatch.setattr("floquet.engine.second_order.np.linalg.inv", lambda P: inverse)
+    A = from_second_order(M, np.zeros((2, 2)), K, PERIOD).A
+    exact = -np.array([[1.0, -0.5], [0.0, 1.0]]) @ K
+    error = np.abs(A.matrices[0, 2:, :2] - exact)
+    np.testing.assert_allclose(error, lacking, rtol=1e-9)
+    assert (error <= A.errors[0, 2:, :2]).all()
+    # |G|^k sums to g/(1 - g) with the norm g = 0.4, of the largest entry of the column, which is 1.
+    np.testing.assert_allclose(A.errors[0, 2:, :2], np.eye(2) + 0.4 / 0.6, rtol=1e-6)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from floquet import monodromy, stability_margins
-from floquet.engine.tongues import Tongue, label_tongue, mode_shares
+from floquet.engine.tongues import Tongue, label_tongue, mode_shares, tongue_tip
 from tests.evidence.floquet.reference_systems import HsuSystem
 from tests.unlike_pairs import unlike_pair
 
@@ -81,3 +81,24 @@ def test_labels_of_the_gear_pair(tongues) -> None:
     labels = {tongue.label for tongue in tongues}
     # On unlike bearings each mode moves the mesh.
     assert {"(w1+w3)/2", "(w2+w3)/2", "2w3/3", "2w3/2"} <= labels
+
+
+@pytest.mark.parametrize("share", [0.0, 0.03, 0.31, 0.5, 0.69, 0.97, 1.0])
+def test_a_tongue_closes_at_the_top_of_its_peak_on_either_side_of_a_sample(share):
+    """1 + tip - damping - (x - peak)^2 has its top at the peak, and closes where the damping is the tip.
+
+    The window is sampled in 32 steps, and the peak is at a share of the step behind the tenth one.
+    """
+    low, high, tip = 0.7, 2.3, 0.04
+    peak = low + (10.0 + share) / 32.0 * (high - low)
+    found = tongue_tip(lambda x, damping: 1.0 + tip - damping - (x - peak) ** 2, (low, high), (0.0, 0.1))
+    # Four rounds of a factor of 16 leave a step of 0.05/16^3, the width of which is squared: 1.5e-10.
+    assert found.damping == pytest.approx(tip, abs=1e-9)
+    assert found.place == pytest.approx(peak, abs=0.05 / 16**3)
+
+
+@pytest.mark.parametrize("peak", [0.7, 2.3])
+def test_a_tongue_that_rises_to_an_end_of_its_window_closes_there(peak):
+    found = tongue_tip(lambda x, damping: 1.04 - damping - abs(x - peak), (0.7, 2.3), (0.0, 0.1))
+    assert found.place == peak
+    assert found.damping == pytest.approx(0.04, abs=1e-9)

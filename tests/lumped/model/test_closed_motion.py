@@ -6,8 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from lumped.errors import NumericalError
 from lumped.model.momentary_load import body_of
-from lumped.model.unilateral_motion import Shooting, motion_of_shooting
+from lumped.model.unilateral_motion import Shooting, _first_settling, _settling, motion_of_shooting
 from lumped.schema.files import load_gear_pair
 from tests.unlike_pairs import unlike_pair
 from validation.exchange.new_pair_file import new_pair
@@ -121,3 +122,24 @@ def test_where_motions_coexist_the_search_starts_from_the_exact_linear_motion():
     assert motion.spectral_radius < 1.0
     assert motion.period == exact.period
     np.testing.assert_array_equal(motion.states, exact.states)
+
+
+@pytest.mark.parametrize("cycles", [1, 6, 19_998])
+def test_a_run_lasts_until_its_start_has_faded_and_two_cycles_more(cycles):
+    """A start fades by the spectral radius in each cycle: radius^n <= 1e-11 after the first such n."""
+    just, later = (1e-11 ** (1.0 / (cycles + more)) for more in (-0.01, 0.01))
+    assert _settling(just) == cycles + 2
+    assert _first_settling(just) == min(cycles + 2, 400)
+    assert _first_settling(later) == min(cycles + 3, 400)
+    if cycles < 19_998:
+        assert _settling(later) == cycles + 3
+    else:  # 20,000 cycles are the most
+        with pytest.raises(NumericalError, match="fades in 20001 mesh cycles, too slowly"):
+            _settling(later)
+
+
+def test_a_start_that_underflows_is_gone_at_once_and_one_that_stays_gets_the_longest_first_run():
+    assert _first_settling(0.0) == 0 + 2
+    assert _first_settling(1.0) == _first_settling(1.5) == _first_settling(np.nan) == 400
+    with pytest.raises(NumericalError, match="not stable"):
+        _settling(1.0)

@@ -10,6 +10,7 @@ from scipy.integrate import quad
 
 from lumped import ParameterError, PathFunction, bodies, geometry, mesh_cycle, periodic_system
 from lumped.model.equations import COORDINATES, structure
+from lumped.model.periodic_system import LTVSystem
 from lumped.model.solution import static_deflection
 
 SEED = 20080614
@@ -111,6 +112,26 @@ def test_static_deflection_is_an_equilibrium(published):
     assert b.inertia_pinion * state[0] / g.base_radius_pinion == pytest.approx(
         -b.inertia_gear * state[1] / g.base_radius_gear, rel=1e-12
     )
+
+
+def test_torques_on_rigid_bearings_speed_the_pinion_up_and_brake_the_gear(unlike):
+    """J_p theta_p'' = T_p and J_g theta_g'' = -T_g, so q = r_p theta_p - r_g theta_g gets both with one sign.
+
+    Torques that balance, T_g/r_g = T_p/r_p, then press the teeth by T_p/r_p: m_e q'' = T_p/r_p with the
+    effective mass 1/m_e = r_p^2/J_p + r_g^2/J_g.
+    """
+    pair = unlike.healthy
+    b, g = bodies(pair), geometry(pair)
+    r_p, r_g = g.base_radius_pinion, g.base_radius_gear
+    full = LTVSystem.of(pair, "full", supports="rigid")
+    np.testing.assert_allclose(full.torque_pinion, [0.0, 0.0, 1.0 / b.inertia_pinion, 0.0], rtol=1e-15)
+    np.testing.assert_allclose(full.torque_gear, [0.0, 0.0, 0.0, -1.0 / b.inertia_gear], rtol=1e-15)
+    for form in ("elastic", "mesh"):
+        relative = LTVSystem.of(pair, form, supports="rigid")
+        np.testing.assert_allclose(relative.torque_pinion, [0.0, r_p / b.inertia_pinion], rtol=1e-14)
+        np.testing.assert_allclose(relative.torque_gear, [0.0, r_g / b.inertia_gear], rtol=1e-14)
+        balanced = r_p * relative.torque_pinion[1] + r_g * relative.torque_gear[1]
+        assert balanced == pytest.approx(1.0 / b.effective_mass, rel=1e-13)
 
 
 @pytest.mark.parametrize("number", [0, 3, 8, "1", None])

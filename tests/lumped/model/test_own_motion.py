@@ -18,7 +18,7 @@ from lumped.model.tooth_laws import ToothLaws, mesh_tables
 from lumped.model.unilateral_motion import settled_motion
 from lumped.schema.bodies import bodies_of
 from tests.lumped.mesh.element_calls import line_at
-from tests.unlike_pairs import unlike_pair
+from tests.unlike_pairs import UNLIKE, unlike_pair
 
 COS = np.cos(np.radians(20.0))
 ERRORS = np.random.default_rng(5).normal(size=28) * 5.0
@@ -371,3 +371,17 @@ def test_ripple_of_the_torque_is_carried_to_the_other_shaft(loaded, form):
     near = 5e-3 if contact == "loaded" else 0.1  # in fixed windows the load rings after each change
     assert abs(first) == pytest.approx(1.0, rel=near)
     assert np.angle(first) == pytest.approx(np.pi / 2.0, abs=near)
+
+
+@pytest.mark.parametrize("name", UNLIKE)
+def test_neighbours_move_each_other_with_loaded_contact_alone(name):
+    """``write_elastic_loads`` asks for one of both: what moves neighbours is never prescribed."""
+    pair = unlike_pair(name)
+    loaded, prescribed = (
+        ToothLaws(pair.with_({"mesh.contact": contact})).contact_law() for contact in ("loaded", "prescribed")
+    )
+    assert prescribed.prescribed
+    assert not prescribed.coupled
+    assert not loaded.prescribed
+    # These two know the body under neighbouring teeth; a parabolic or a rectangular law is of one tooth pair.
+    assert loaded.coupled == (pair.mesh.stiffness.model in ("energy", "finite_elements"))

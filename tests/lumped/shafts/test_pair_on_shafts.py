@@ -192,3 +192,35 @@ def test_each_gear_is_a_disc_of_its_own_on_its_shaft(unlike):
         disc = discs(unlike)[gear_index]
         assert (disc.mass, disc.inertia) == (mass, inertia)
         assert disc.tilting == pytest.approx(0.5 * inertia + mass * gear.face_width**2 / 12.0, rel=1e-12)
+
+
+def test_each_gear_whirls_at_the_speed_of_its_own_shaft(unlike, on_short_shafts):
+    """A disc tilts on springs at two frequencies, forward and backward: they are J Omega/J_t apart.
+
+    With phi = phi_x + i phi_y: J_t phi'' - i J Omega phi' + K phi = 0, so the difference of the roots' moduli
+    is J Omega/J_t whatever K is.
+    """
+    pair = unlike.healthy.with_(shafts=None)
+    tilts = 1e5  # [rad/s], far from every other frequency
+    of_gears = discs(pair)
+    springs = {
+        f"shafts.{gear}.bearings.0.tilt_stiffness": disc.tilting * tilts**2
+        for gear, disc in zip(("pinion", "gear"), of_gears, strict=True)
+    }
+    on_springs = on_short_shafts(pair).with_(springs | {"shafts.max_frequency": 25_000})
+    modes = periodic_system(on_springs, "full", supports="shafts").supports.modes
+    speed = 2.0 * math.pi * 20_000 / 60.0  # of the pinion
+    teeth = pair.pinion.teeth, pair.gear.teeth
+    for number, disc in enumerate(of_gears):
+        bending = (modes.shaft == number) & (modes.kind < 2)
+        count = int(bending.sum())
+        matrix = np.block([
+            [np.zeros((count, count)), np.eye(count)],
+            [-np.diag(modes.frequencies[bending] ** 2), -speed * modes.gyroscopic[np.ix_(bending, bending)]],
+        ])  # fmt: skip
+        frequencies = np.abs(np.linalg.eigvals(matrix).imag)
+        whirls = frequencies[np.abs(frequencies - tilts) < 0.1 * tilts]
+        assert whirls.size == 4  # each beside its complex conjugate
+        expected = disc.inertia / disc.tilting * speed * teeth[0] / teeth[number]
+        # The light shaft bends a little and turns with the disc.
+        assert np.ptp(whirls) == pytest.approx(expected, rel=1e-3)

@@ -10,7 +10,17 @@ from lumped.model.periodic_system import LTVSystem
 from lumped.model.tooth_laws import ToothLaws
 from multibody.contact.kernels import tooth_forces
 from multibody.contact.machine import machine
-from multibody.contact.records import CONTACTS_SIZE, COORDINATES, PHI_P, opened_contacts, opened_records
+from multibody.contact.records import (
+    BLOCKS,
+    CONTACTS_SIZE,
+    COORDINATES,
+    PHI_P,
+    opened,
+    opened_contacts,
+    opened_records,
+    opened_table,
+    with_block,
+)
 from multibody.contact.tooth_pairs import OwnTeeth, TurnedArcs, teeth_of_pair, tooth_pair
 from multibody.run.effects import effect_flags
 from tests.unlike_pairs import unlike_pair
@@ -136,3 +146,20 @@ def test_a_displaced_tooth_that_carries_alone_makes_the_gear_lag_or_lead(gear, l
     assert approach(1.0, 2) - approach(0.0, 2) == pytest.approx(lag, rel=1e-6)
     assert approach(1.0, 1) == approach(0.0, 1)
     assert approach(1.0, 3) == approach(0.0, 3)
+
+
+def test_another_table_in_a_machine_leaves_its_numbers_and_all_other_blocks(pair):
+    """Behind a longer table the blocks begin elsewhere, and hold what they held."""
+    packed = machine(pair.with_({"pinion.faults": [CRACK]})).packed
+    places = opened(packed).blocks
+    table = np.arange(30.0).reshape(6, 5)
+    changed = with_block(packed, "stiffness", table)
+    now = opened(changed).blocks
+    filled = 0
+    for name in BLOCKS.names:
+        expected = table if name == "stiffness" else opened_table(packed, places[name])
+        np.testing.assert_array_equal(opened_table(changed, now[name]), expected)
+        filled += expected.size > 0
+    assert filled > 3  # stiffness, friction or friction laws, teeth of both gears, faults
+    assert opened(changed).geometry == opened(packed).geometry
+    assert opened(changed).pair_law == opened(packed).pair_law

@@ -202,3 +202,30 @@ def test_a_static_curve_is_load_over_stiffness(pair):
     # Behind each jump of the stiffness the motion still rings at orders above the natural frequency.
     waves, static = (np.fft.rfft(values)[1:7] for values in (motion.samples("dte"), expected))
     assert np.linalg.norm(waves - static) < 0.05 * np.linalg.norm(static)
+
+
+#: Label -> diameters of both bores by those of the pair.
+BORES = {
+    "without bore": lambda pinion, gear: (0.0, 0.0),
+    "without bore: pinion": lambda pinion, gear: (0.0, gear),
+    "without bore: gear": lambda pinion, gear: (pinion, 0.0),
+    "bores exchanged": lambda pinion, gear: (gear, pinion),
+    "bore as a radius": lambda pinion, gear: (2.0 * pinion, 2.0 * gear),
+    "half of the bore": lambda pinion, gear: (0.5 * pinion, 0.5 * gear),
+}
+
+
+@pytest.mark.parametrize("label", BORES)
+def test_discs_of_other_bores(label):
+    """m = pi rho b (r^2 - r_b^2) and J = m (r^2 + r_b^2)/2, with the reference radius r = m_n z/2."""
+    bored = {"pinion.bore": 20, "gear.bore": 47}
+    pair = unlike_pair("contact_ratio_1_1_large_shifts").with_(COULOMB | bored)
+    changed = variant_of(pair, "radius of the discs", label).pair
+    bores = BORES[label](0.020, 0.047)
+    # As in the file of the pair: teeth, face width, density.
+    gears = {"pinion": (15, 0.042, 7850.0), "gear": (52, 0.038, 7700.0)}
+    for (name, (teeth, width, density)), bore in zip(gears.items(), bores, strict=True):
+        r, hole = 0.004 * teeth / 2.0, bore / 2.0
+        mass = np.pi * density * width * (r**2 - hole**2)
+        assert getattr(changed, name).mass == pytest.approx(mass, rel=1e-12)
+        assert getattr(changed, name).inertia == pytest.approx(mass * (r**2 + hole**2) / 2.0, rel=1e-12)
