@@ -86,11 +86,23 @@ def mistaken_factors(pair: GearPair) -> dict[str, float]:
         "rad/s were taken for turns per second": 2.0 * math.pi,
         HALF: 0.5,
         TWICE: 2.0,
+    } | factors_of_times(pair)
+    return {cause: factor for cause, factor in factors.items() if abs(factor - 1.0) > SAME}
+
+
+def factors_of_times(pair: GearPair) -> dict[str, float]:
+    """Return mistakes of the time alone, the motion being at the speed of the pair, and their factors."""
+    g = pair.geometry
+    return {
         "times are in milliseconds": 1e-3,
         "times are in microseconds": 1e-6,
         "times are a thousandth of seconds": 1e3,
+        "times are angles of the pinion in radians": 1.0 / g.omega_pinion,
+        "times are angles of the pinion in degrees": math.pi / (180.0 * g.omega_pinion),
+        "times are angles of the gear in radians": 1.0 / g.omega_gear,
+        "times are turns of the pinion": 2.0 * math.pi / g.omega_pinion,
+        "times are mesh cycles": g.mesh_period,
     }
-    return {cause: factor for cause, factor in factors.items() if abs(factor - 1.0) > SAME}
 
 
 def nominal_cycles(curves: Curves, pair: GearPair) -> FloatArray:

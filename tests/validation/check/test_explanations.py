@@ -553,13 +553,33 @@ def test_transmission_error_with_a_dead_zone_about_zero(pairs, shared):
     assert [step.factor for step in ladder.steps] == ["dte: half of the backlash"]
 
 
-def test_time_axis(pairs, shared):
-    motion = lumped_motion(pairs["unlike"])
+@pytest.mark.parametrize("words", ["times are a thousandth", "times are angles of the pinion in radians"])
+def test_time_axis(words, pairs, shared):
+    pair = pairs["unlike"]
+    factor = pair.operating.pinion_speed if "angles" in words else 1e3
+    motion = lumped_motion(pair)
     curves = sampled(motion)
-    problem = Problem.of(pairs["unlike"], replace(curves, places=1e3 * curves.places), motion)
+    per_second = factor if "angles" in words else 1.0 / factor
+    problem = Problem.of(pair, replace(curves, places=per_second * curves.places), motion)
     ladder = climbed(problem, shared, "unlike", "time axis")
     assert [step.name for step in ladder.steps] == ["time axis"]
-    assert ladder.steps[0].factor == pytest.approx(1e3, rel=1e-3)
+    assert ladder.steps[0].factor == pytest.approx(per_second, rel=1e-3)
+    assert words in ladder.steps[0].sentence
+
+
+def test_all_bearing_forces_without_their_dampers(pairs, shared):
+    """One mistake in several channels is one step."""
+    pair = pairs["unlike"].with_({"bearings.damping_ratio": 0.3})
+    motion = lumped_motion(pair)
+    bearings = {"p": pair.bearings.pinion, "g": pair.bearings.gear}
+    curves = sampled(motion, ("dte", "x_p", "x_g", "bearing_force_x_p", "bearing_force_x_g"))
+    values = {channel.name: channel.values for channel in curves.channels}
+    for gear, bearing in bearings.items():
+        springs = -bearing.loa_stiffness * values[f"x_{gear}"]
+        curves = changed(curves, (f"bearing_force_x_{gear}",), lambda v, springs=springs: springs)
+    ladder = climbed(Problem.of(pair, curves, motion), shared, "unlike", "another quantity")
+    assert [step.name for step in ladder.steps] == ["another quantity"]
+    assert "damper in the channels bearing_force_x_p, bearing_force_x_g" in ladder.steps[0].sentence
 
 
 def test_speed_of_the_other_gear(pairs, shared):

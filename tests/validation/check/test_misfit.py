@@ -1,6 +1,7 @@
 """Is the misfit 0 for equal motions in any phase, and does it see what a peak to peak does not?"""
 
 import dataclasses
+import math
 
 import numpy as np
 import pytest
@@ -120,6 +121,25 @@ def test_the_mesh_frequency_of_the_samples(pair, factor, cause):
     frequency = mesh_frequency(scaled, pair)
     assert frequency.cause == cause
     assert frequency.factor == pytest.approx(factor, rel=3e-4)  # a phase of 0.006 after 20 cycles
+
+
+@pytest.mark.parametrize("kind", [
+    "angles of the pinion in radians", "angles of the pinion in degrees", "angles of the gear in radians",
+    "turns of the pinion", "mesh cycles",
+])  # fmt: skip
+def test_the_mesh_frequency_of_angles_in_the_place_of_times(pair, kind):
+    speed, teeth = pair.operating.pinion_speed, (pair.pinion.teeth, pair.gear.teeth)
+    per_second = {
+        "angles of the pinion in radians": speed,
+        "angles of the pinion in degrees": math.degrees(speed),
+        "angles of the gear in radians": speed * teeth[0] / teeth[1],
+        "turns of the pinion": speed / (2.0 * math.pi),
+        "mesh cycles": speed * teeth[0] / (2.0 * math.pi),
+    }[kind]
+    curves = sampled(pair, ("dte", "x_p"), cycles=20)
+    frequency = mesh_frequency(dataclasses.replace(curves, places=curves.places * per_second), pair)
+    assert frequency.cause == f"times are {kind}"
+    assert frequency.factor == pytest.approx(1.0 / per_second, rel=3e-4)
 
 
 def test_a_rotation_with_its_nominal_part_is_a_ramp(pair):

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
@@ -23,6 +23,7 @@ from validation.check.explanations.reading import (
     refined_curves_fit,
     turning_channels,
 )
+from validation.check.mesh_frequency import factors_of_times
 from validation.check.problem import Problem
 from validation.check.quantities import GEARS, LINES, PLACES, QUANTITIES, Quantity, quantity_of
 
@@ -242,8 +243,9 @@ def _other_line(quantity: str) -> str:
 
 
 def _other_quantities(problem: Problem, variant: Variant) -> list[Choice]:
-    """A channel that holds another quantity than its name says."""
+    """Channels that hold another quantity than their names say: each alone, and all with the same mistake."""
     choices = []
+    alike: dict[str, dict[str, tuple[str, float]]] = {}
     quantities = dict(variant.reading.quantities)
     for channel in problem.curves.channels:
         kind = quantity_of(quantities.get(channel.name, channel.quantity))
@@ -260,7 +262,20 @@ def _other_quantities(problem: Problem, variant: Variant) -> list[Choice]:
 
             label = f"{channel.name}: {words}"
             choices.append(_reading(label, f"{words} in the channel {channel.name}", change))
-    return choices
+            alike.setdefault(words, {})[channel.name] = quantity, factor
+    return choices + [_all_alike(words, channels) for words, channels in alike.items() if len(channels) > 1]
+
+
+def _all_alike(words: str, channels: Mapping[str, tuple[str, float]]) -> Choice:
+    """Several channels with the same mistake; of each the quantity, and the factor to its values."""
+    quantities = {name: quantity for name, (quantity, _) in channels.items()}
+    factors = {name: factor for name, (_, factor) in channels.items()}
+    names = ", ".join(channels)
+    return _reading(
+        f"{names}: {words}",
+        f"{words} in the channels {names}",
+        lambda reading: reading.with_quantities(quantities).with_factors(factors),
+    )
 
 
 def _mistaken(problem: Problem, kind: Quantity) -> Iterator[tuple[str, str, float]]:
@@ -428,6 +443,8 @@ def _time_axis(problem: Problem, variant: Variant) -> list[Choice]:
     if problem.curves.abscissa != "time" or (not problem.frequency.cause and abs(factor - 1.0) < 5e-3):
         return []
     words = f"a time axis {factor:.4g} times too fast, with the motion at the speed of the pair"
+    if problem.frequency.cause in factors_of_times(problem.pair):
+        words += f": {problem.frequency.cause}"
     return [_reading(1.0 / factor, words, lambda reading: reading)]
 
 
@@ -508,7 +525,8 @@ def _causes() -> Iterator[Cause]:
 
     yield read(
         "time axis",
-        "times in another unit, or at another speed than the motion",
+        "times in another unit, angles or mesh cycles in their place, or times at another speed than the "
+        "motion",
         "ratio of the frequencies",
         _time_axis,
     )
