@@ -88,7 +88,7 @@ class _Listener:
 
 def main() -> None:
     """Compute a multibody motion. Numba stores the compiled kernels."""
-    gc.set_threshold(1_000_000)  # as in the command itself; by default a tenth of the time goes there
+    gc.set_threshold(5_000_000)  # as in the command itself; by default a tenth of the time goes there
     import multibody
     from lumped import load_gear_pair
 

@@ -78,7 +78,7 @@ def _receive(stream: BinaryIO, received: queue.SimpleQueue[Message]) -> None:
 def main() -> None:
     """Compute what the first process asks for, until it says that this is all, or ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C ends the first process, which ends this one
-    gc.set_threshold(1_000_000)  # as in the command itself
+    gc.set_threshold(5_000_000)  # as in the command itself
     answers = Answers(os.fdopen(os.dup(1), "wb"))
     os.dup2(2, 1)  # what a library prints is no message
     received: queue.SimpleQueue[Message] = queue.SimpleQueue()
