@@ -130,8 +130,9 @@ def main() -> None:
     """Entry point of the installed command."""
     # Must be set before numpy is imported. The matrices are small: BLAS threads only wait for each other.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    # Results live until the end. The default garbage collection would take 5 % of the time of a report. A first
-    # report leaves 2 million objects of the compiler: to collect them takes 5 % of its time, and saves 250 MB.
+    # Results live until the end. The default garbage collection would take 5 % of the time of a report.
+    # The compiler leaves 2 million objects in a first report. To collect them would take 5 % of its time
+    # and save 250 MB.
     gc.set_threshold(5_000_000)
     _open_streams()
     _forget_narrow_terminal()
