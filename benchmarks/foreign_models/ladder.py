@@ -55,6 +55,8 @@ def report(case: Case) -> None:
             f"    {step.name} {step.factor}: {step.misfit:.4f}{' or ' + others if others else ''}", flush=True
         )
         print(f"        {step.sentence}")
+    for one in () if result.ladder is None else result.ladder.alone:
+        print(f"    alone: {one.name} {one.factor}: {one.misfit:.4f}", flush=True)
 
 
 def main(arguments: Sequence[str]) -> None:

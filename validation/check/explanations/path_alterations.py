@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
+from lumped.schema.pair import GearPair
 from lumped.stiffness.energy import EnergyStiffness
 from lumped.stiffness.parabolic import ParabolicStiffness
 from validation.check.explanations.cause import Cause, Choice, Kind, Variant
@@ -26,6 +27,9 @@ _TABLES: Mapping[TableJoin, tuple[int, ...]] = {
     "middles": (8, 10, 12, 16, 20, 24, 30, 36),
     "spline": (8, 10, 12, 16, 20, 24),
 }
+#: The same of tables that have the friction coefficient too: joins, entries.
+_OF_FRICTION_TOO: tuple[TableJoin, ...] = ("steps", "middles")
+_TABLES_WITH_FRICTION = (8, 10, 12, 16, 20)
 _JOINED: Mapping[TableJoin, str] = {
     "lines": "joined by straight lines",
     "steps": "without interpolation",
@@ -85,9 +89,18 @@ def _contact_ratio(problem: Problem, variant: Variant) -> list[Choice]:
         for ending, text, share in (
             ("", ", from the true start of contact", 1.0),
             (", about the middle", ", about the middle of the path", 0.5),
+            # Approach and recess in the same ratio: positions over the circular pitch.
+            (", about the pitch point", ", about the pitch point", recess_share(variant.pair)),
         )
+        if share in (0.5, 1.0) or label == "circular pitch"
         if value >= 1.0 and abs(value - ratio) > _APART
     ]
+
+
+def recess_share(pair: GearPair) -> float:
+    """Return the share of the path of contact behind the pitch point."""
+    g = pair.geometry
+    return (g.L_XD - g.L_XP) / (g.L_XD - g.L_XA)
 
 
 def _lines_of_action(problem: Problem, variant: Variant) -> list[Choice]:
@@ -121,6 +134,8 @@ def _lines_of_action(problem: Problem, variant: Variant) -> list[Choice]:
     }
     choices = []
     for label, (whole, tips, words) in lines.items():
+        if label.startswith("of the rack") and abs(whole - g.L_XY) / g.base_pitch < _APART:
+            continue  # shifts that balance: the line is the same
         reaches = [
             math.sqrt(tip**2 - base**2)
             for tip, base in zip(tips, (g.base_radius_pinion, g.base_radius_gear), strict=True)
@@ -158,8 +173,8 @@ def _tables(problem: Problem, variant: Variant) -> list[Choice]:
     if not may_vary(problem, variant):
         return []
 
-    def change(entries: int, join: TableJoin) -> Callable[[Variant], Variant]:
-        return lambda one: one.with_physics(table=entries, table_join=join)
+    def change(entries: int, join: TableJoin, *, friction: bool = False) -> Callable[[Variant], Variant]:
+        return lambda one: one.with_physics(table=entries, table_join=join, table_of_friction=friction)
 
     def of_pair(entries: int) -> Callable[[Variant], Variant]:
         return lambda one: one.with_physics(pair_table=entries)
@@ -173,6 +188,16 @@ def _tables(problem: Problem, variant: Variant) -> list[Choice]:
         for join, counts in _TABLES.items()
         for entries in counts
     ]
+    if variant.pair.friction.law != "none":
+        choices += [
+            _changed(
+                f"{entries}, {join}, friction too",
+                f"a table of {entries} entries a mesh cycle of stiffness and friction, {_JOINED[join]}",
+                change(entries, join, friction=True),
+            )
+            for join in _OF_FRICTION_TOO
+            for entries in _TABLES_WITH_FRICTION
+        ]
     choices += [
         _changed(
             f"{abs(entries)} of a tooth pair{', zero at A' if entries < 0 else ''}",
@@ -268,7 +293,7 @@ def _causes() -> Iterator[Cause]:
     yield fixed(
         "zones of contact",
         "another contact ratio: zones exchanged, of equal length, the circular pitch for the base pitch",
-        "zones exchanged, circular pitch, halves; from A, about the middle",
+        "zones exchanged, circular pitch, halves; from A, about the middle, about the pitch point",
         _contact_ratio,
     )
     yield fixed(
@@ -286,7 +311,8 @@ def _causes() -> Iterator[Cause]:
     yield fixed(
         "table of the stiffness",
         "a table of the stiffness of the mesh, or of a tooth pair, that is too coarse",
-        f"{_TABLES['lines'][0]} to {_TABLES['steps'][-1]} entries a mesh cycle; lines, steps, splines",
+        f"{_TABLES['lines'][0]} to {_TABLES['steps'][-1]} entries a mesh cycle; lines, steps, splines; with "
+        "friction",
         _tables,
     )
     yield fixed(
