@@ -64,6 +64,7 @@ FURTHER = (
     ("table of the stiffness", "12, middles, friction too"),
     ("table of the stiffness", "10, steps, friction too"),
     ("values of one for both", "inertia of the pinion"),
+    ("values of one for both", "bearings, mean of both directions"),
     ("values of one for both", "bearing stiffness of the gear"),
     ("zones of contact", "circular pitch, about the pitch point"),
     ("unit of the torque", "1000"),

@@ -35,9 +35,8 @@ _INERTIAS = (
     (1e3, "1000", "a unit that makes it 1000 times too large"),
     (1e-3, "0.001", "a unit that makes it 1000 times too small"),
     (1e4, "10000", "kg cm^2 in place of kg m^2"),
-    (1e6, "1e6", "kg mm^2 in place of kg m^2"),
 )
-_OF_BOTH = (1e3, 1e-3, 1e4, 1e6)
+_OF_BOTH = (1e3, 1e-3, 1e4)
 #: Units by which masses and inertias are mistaken together: factor, words.
 _MASS_UNITS = (
     (1e3, "1000 times too large, as by kilograms beside newtons and millimetres"),
@@ -331,6 +330,14 @@ def _one_for_both(problem: Problem, variant: Variant) -> list[Choice]:
         if pair.with_(fields) != pair:
             text = f"the bearing stiffness {words} the line of action in both directions"
             choices.append(choice(f"bearings {words}", text, constant(fields)))
+    means: dict[str, float] = {}
+    for gear in GEARS:
+        bearing = getattr(pair.bearings, gear)
+        mean = sum(getattr(bearing, f"{line}_stiffness") for line in LINES) / len(LINES)
+        means |= {f"bearings.{gear}.{line}_stiffness": mean for line in LINES}
+    if pair.with_(means) != pair:
+        text = "the mean of the bearing stiffness of both directions in both of them"
+        choices.append(choice("bearings, mean of both directions", text, constant(means)))
     return choices
 
 
@@ -344,7 +351,7 @@ def _causes() -> Iterator[Cause]:
     yield fixed_values(
         "inertia by m r^2",
         "m r^2 in place of m r^2/2, half of the inertia, GD^2, about a diameter, or another unit",
-        "2, 0.5, 4, 0.25, about a diameter: both gears, one gear; 1000, 0.001; kg cm^2, kg mm^2",
+        "2, 0.5, 4, 0.25, about a diameter: both gears, one gear; 1000, 0.001; kg cm^2",
         _ring,
     )
     yield fixed_values(
@@ -368,7 +375,7 @@ def _causes() -> Iterator[Cause]:
     yield fixed_values(
         "values of one for both",
         "bearings or masses of one gear for both gears, or one bearing stiffness for both directions",
-        "bearings, masses: pinion, gear, whole or in part; bearings: along, across",
+        "bearings, masses: pinion, gear, whole or in part; bearings: along, across, mean",
         _one_for_both,
     )
     yield free_factor("inertia", "the inertia of both gears", _MASS, _inertia)

@@ -31,7 +31,7 @@ from validation.check.explanations.fields import (
     times,
     with_prescribed_contact,
 )
-from validation.check.explanations.path_alterations import may_vary, recess_share
+from validation.check.explanations.path_alterations import may_vary, recess_share, with_ends_of
 from validation.check.mesh_frequency import circular_over_base
 from validation.check.problem import Problem
 
@@ -314,7 +314,8 @@ def _circular_pitches(problem: Problem, variant: Variant, shown: float) -> Itera
     def change(share: float) -> Callable[[Variant], Variant]:
         def changed(one: Variant) -> Variant:
             slower = with_prescribed_contact(one).with_inputs(dict(_speed(one.pair, shown)))
-            return slower.with_physics(path_start=-(1.0 - share) * less, path_end=share * less)
+            ends = with_ends_of(slower, less)
+            return ends.with_physics(path_start=-(1.0 - share) * less, path_end=share * less)
 
         return changed
 

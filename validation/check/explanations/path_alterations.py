@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from lumped.schema.pair import GearPair
 from lumped.stiffness.energy import EnergyStiffness
-from lumped.stiffness.parabolic import ParabolicStiffness
+from lumped.stiffness.parabolic import ParabolicStiffness, iso_end_ratio
 from validation.check.explanations.cause import Cause, Choice, Kind, Variant
 from validation.check.explanations.contact_laws import COMPLIANCES, Compliance, TableJoin
 from validation.check.explanations.fields import reference_radii, tip_radii, with_prescribed_contact
@@ -56,7 +56,19 @@ def _changed(label: float | str, words: str, change: Callable[[Variant], Variant
 
 def _path(start: float, end: float) -> Callable[[Variant], Variant]:
     """Change of a variant by base pitches by which the path of contact starts and ends later."""
-    return lambda variant: variant.with_physics(path_start=start, path_end=end)
+    return lambda variant: with_ends_of(variant, end - start).with_physics(path_start=start, path_end=end)
+
+
+def with_ends_of(variant: Variant, longer: float) -> Variant:
+    """Return a variant whose parabola has the ends of a path that is longer by so many base pitches.
+
+    Only where the contact ratio decides the ends, as in ISO 6336-1.
+    """
+    stiffness = variant.pair.mesh.stiffness
+    if not isinstance(stiffness, ParabolicStiffness) or stiffness.end_ratio is not None:
+        return variant
+    ratio = max(variant.pair.geometry.contact_ratio + longer, 1.0)
+    return variant.with_inputs({"mesh.stiffness.end_ratio": iso_end_ratio(ratio)})
 
 
 def _contact_ratio(problem: Problem, variant: Variant) -> list[Choice]:
@@ -148,7 +160,7 @@ def _lines_of_action(problem: Problem, variant: Variant) -> list[Choice]:
         def change(
             one: Variant, start: float = start, end: float = end, other: bool = whole != g.L_XY
         ) -> Variant:
-            moved = one.with_physics(path_start=start, path_end=end)
+            moved = with_ends_of(one, end - start).with_physics(path_start=start, path_end=end)
             if not other or one.pair.friction.law == "none":
                 return moved
             return moved.with_physics(course="line of the rack", arms="line of the rack")
