@@ -496,6 +496,7 @@ def test_what_a_friction_law_reads(pair):
     assert law(xi) == pytest.approx(expected, rel=1e-6)
     for label, (p, sr, v) in {
         "sum of the rolling velocities": (pressure, ratio, roll),
+        "sum of the rolling velocities everywhere": (pressure, 0.5 * ratio, roll),
         "half of the slide-to-roll ratio": (pressure, 0.5 * ratio, 0.5 * roll),
         "half of the modulus": (pressure / root, ratio, 0.5 * roll),
         "twice the modulus": (pressure * root, ratio, 0.5 * roll),
