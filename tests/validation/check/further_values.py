@@ -31,6 +31,8 @@ FURTHER = (
     ("supports", "rigid gear"),
     ("supports", "rigid across"),
     ("damper law", "constant for each pair"),
+    ("damper law", "proportional at the mesh frequency"),
+    ("damper law", "proportional at the mesh frequency, bearings too"),
     ("values of one for both", "masses of the gear"),
     ("stiffness over the mesh cycle", "two harmonics"),
     ("bearing damping left out", "left out, along"),

@@ -299,6 +299,13 @@ def test_dampers_in_proportion_to_stiffness(pair):
     assert time == pytest.approx(time[0], rel=1e-5)
     bearings = altered_equations(pair, Physics(proportional_bearings=True))
     assert bearings.damping[2:] == pytest.approx(time[0] * bearings.stiffness[2:], rel=1e-5)
+    of_frequency = altered_elements(pair, Physics(damper="proportional at the mesh frequency"))
+    of_mesh = 2.0 * pair.mesh.damping_ratio / (2.0 * np.pi / pair.geometry.mesh_period)
+    places = np.linspace(pair.geometry.L_XA, pair.geometry.L_XD, 33)[1:-1]
+    assert of_frequency.damping(places) == pytest.approx(of_mesh * of_frequency.stiffness(places), rel=1e-6)
+    both = Physics(damper="proportional at the mesh frequency", proportional_bearings=True)
+    dampers = altered_equations(pair, both)
+    assert dampers.damping == pytest.approx(of_mesh * dampers.stiffness)
 
 
 def test_a_constant_damper_for_each_pair(pair):

@@ -314,32 +314,29 @@ def _prescribed(field: str) -> Callable[[Variant, float], Variant]:
 def _dampers(problem: Problem, variant: Variant) -> list[Choice]:
     if variant.pair.mesh.damping_ratio == 0.0:
         return []
-    return [
-        _altered("constant", "a constant damper of the mesh", damper="constant"),
-        _altered("proportional", "a damper of the mesh proportional to its stiffness", damper="proportional"),
-        _altered(
-            "root of the whole mesh",
-            "one damper by the root of the stiffness of the whole mesh",
-            damper="of the whole mesh",
-        ),
-        _altered(
+    frequency = "proportional at the mesh frequency"
+    texts = (
+        ("constant", "constant", "a constant damper of the mesh"),
+        ("proportional", "proportional", "a damper of the mesh proportional to its stiffness"),
+        ("root of the whole mesh", "of the whole mesh", "one damper by the root of the whole mesh stiffness"),
+        (
+            "constant for each pair",
             "constant for each pair",
             "a constant damper for each tooth pair, the whole one of the mesh",
-            damper="constant for each pair",
         ),
-        *(
-            [
-                _altered(
-                    "proportional, bearings too",
-                    "dampers of mesh and bearings proportional to stiffness, with the ratio of the mesh",
-                    damper="proportional",
-                    proportional_bearings=True,
-                )
-            ]
-            if variant.pair.shafts is None
-            else []
+        (
+            frequency,
+            frequency,
+            "a damper of the mesh proportional to its stiffness, 2 zeta k/omega with the mesh frequency",
         ),
-    ]
+    )
+    choices = [_altered(label, words, damper=law) for label, law, words in texts]
+    if variant.pair.shafts is None:
+        words = "dampers of mesh and bearings proportional to stiffness, with the ratio of the mesh"
+        for law, more in (("proportional", ""), (frequency, " at its frequency")):
+            changes = {"damper": law, "proportional_bearings": True}
+            choices.append(_altered(f"{law}, bearings too", words + more, **changes))
+    return choices
 
 
 def _pulling(problem: Problem, variant: Variant) -> list[Choice]:
@@ -545,7 +542,8 @@ def _causes() -> Iterator[Cause]:
     yield altered(
         "damper law",
         "another law of the dampers of the teeth",
-        "constant, proportional, root of the whole mesh, constant for each pair; bearings too",
+        "constant, proportional (at the mesh frequency too), root of the whole mesh, constant for each pair; "
+        "bearings too",
         _dampers,
     )
     yield altered(

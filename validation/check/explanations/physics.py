@@ -400,7 +400,9 @@ def altered_equations(pair: GearPair, physics: Physics) -> Structure:
     if physics.bearings != "elastic":
         for forces in (normal, deflection, arm, apart):
             forces[list(_HELD[physics.bearings])] = 0.0
-    damping = proportional_dampers(pair) if physics.proportional_bearings else s.damping
+    damping = s.damping
+    if physics.proportional_bearings:
+        damping = proportional_dampers(pair, at_frequency=physics.damper.endswith("frequency"))
     damping = damping + damping_of_masses(pair, physics.mass_damping)
     return replace(s, damping=damping, normal=normal, deflection=deflection, friction_arm=arm, apart=apart)
 
@@ -444,11 +446,15 @@ def friction_arms(pair: GearPair, arms: Arms) -> FloatArray:
     return arm
 
 
-def proportional_dampers(pair: GearPair) -> FloatArray:
+def proportional_dampers(pair: GearPair, *, at_frequency: bool = False) -> FloatArray:
     """Return dampers (6,) of the bearings in proportion to their stiffness, with the ratio of the mesh.
 
-    c = k 2 zeta sqrt(m_e/mean K), as the mesh damper is to the mean stiffness of the mesh.
+    c = k 2 zeta sqrt(m_e/mean K), as the mesh damper is to the mean stiffness of the mesh. ``at_frequency``:
+    c = k 2 zeta/omega with the mesh frequency.
     """
+    if at_frequency:
+        time = pair.mesh.damping_ratio * pair.geometry.mesh_period / math.pi
+        return np.asarray(time * structure(pair).stiffness)
     mean = mean_of_pairs(contact_of(pair).elements(pair).stiffness, pair.geometry.base_pitch)
     time = 2.0 * pair.mesh.damping_ratio * math.sqrt(bodies_of(pair).effective_mass / mean)
     return np.asarray(time * structure(pair).stiffness)
