@@ -24,6 +24,8 @@ from validation.check.curves import Channel, Curves
 SAME = 0.005
 #: Mesh orders by which the mesh frequency is found.
 _FIRST = 6
+#: The mistake by which the mesh frequency is that of the teeth of the gear at the speed of the pinion.
+SPEED_OF_GEAR = "the speed is that of the gear"
 #: Mistakes by which the speed is half or twice that of the pair.
 HALF = "half of the speed, as by pi/60 for pi/30"
 TWICE = "twice the speed, as by pi/15 for pi/30"
@@ -50,6 +52,9 @@ _ENOUGH = 0.25
 #: pair: at most the first number, and the second number times the change at the frequency of the pair.
 _SMALL_CHANGE = 0.05
 _SMALLER = 0.1
+#: A motion that repeats in so many parts of the mesh cycle of the pair has another mesh frequency. One that
+#: repeats in halves may be a resonance of the second mesh order.
+_FEWEST_PARTS = 3
 #: The first orders at the frequency of the pair carry little below this share of the variation.
 _LITTLE = 0.5
 #: A known factor is the one found where it is this near to it, and changes at most this many times as much.
@@ -81,7 +86,7 @@ def mistaken_factors(pair: GearPair) -> dict[str, float]:
     """Return mistakes of speed or time, and the factor of each on the mesh frequency."""
     ratio = pair.gear.teeth / pair.pinion.teeth
     factors = {
-        "the speed is that of the gear": ratio,
+        SPEED_OF_GEAR: ratio,
         "the pinion turns at the speed of the gear": 1.0 / ratio,
         "rpm were taken for rad/s": 30.0 / math.pi,
         "rad/s were taken for rpm": math.pi / 30.0,
@@ -146,6 +151,9 @@ def mesh_frequency(curves: Curves, pair: GearPair, *, mistakes: bool = True) -> 
         # A subharmonic motion at the right speed repeats in two cycles, too, but keeps its mesh orders.
         enough = max(_ENOUGH, _TIMES_HALF * at_pair) if cause == HALF else _ENOUGH
         repeats = most > enough and carried.repeats(trial, best.factor)
+        if cause == SPEED_OF_GEAR and most > _MOST:
+            clearly = round(factor) >= _FEWEST_PARTS or most > _TIMES_HALF * at_pair
+            repeats |= clearly and carried.repeats_in_parts(trial, best.factor)
         if (more or repeats) and not _is_multiple(trial, best):
             best, at_pair = Frequency(trial, cause), most / _TIMES
     if not best.cause and mistakes and at_pair < _LITTLE:
@@ -289,6 +297,14 @@ class _Carried:
         """Return whether the curves repeat at a factor, and do not at another one."""
         change = self.change(factor)
         return change < min(_SMALL_CHANGE, _SMALLER * self.change(other))
+
+    def repeats_in_parts(self, factor: float, other: float) -> bool:
+        """Return whether the curves repeat within a whole part of a cycle as well as over the whole cycle.
+
+        Over the cycle of the pair they repeat too, so that `repeats` tells nothing.
+        """
+        whole = abs(factor / other - round(factor / other)) < SAME
+        return whole and self.change(factor) < min(_SMALL_CHANGE, _AS_WELL * self.change(other))
 
     def strongest(self, about: float, width: float, length: float) -> tuple[float, float]:
         """Return the factor with the largest share, within ``about`` +- ``width``; then the step."""

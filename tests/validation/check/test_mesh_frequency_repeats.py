@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import lumped
+import spurcheck
 from tests.validation.check.motions import lumped_motion
 from tests.validation.check.sampled_motions import COULOMB, sampled
 from validation.check.mesh_frequency import mesh_frequency
@@ -77,3 +78,29 @@ def test_speed_of_the_gear_where_the_first_orders_carry_less_than_half(pair):
     assert frequency.factor == pytest.approx(1.5, rel=1e-3)
     assert "gear" in frequency.cause
     assert mesh_frequency(pulsed, faster).factor == pytest.approx(1.0, abs=1e-6)
+
+
+@pytest.mark.parametrize("teeth", [(20, 80), (17, 51)])
+def test_speed_of_the_gear_where_one_mesh_cycle_holds_several(teeth):
+    """The ratio of the teeth is whole: the motion repeats in the mesh cycle of the pair, too."""
+    ratio = teeth[1] / teeth[0]
+    pair = spurcheck.new_pair(teeth, module=2, face_width=20, speed=1500 / ratio, torque=30)
+    faster = pair.with_(operating__pinion_speed="1500 rpm")
+    frequency = mesh_frequency(curves_of(faster), pair)
+    assert frequency.factor == pytest.approx(ratio, rel=1e-3)
+    assert "gear" in frequency.cause
+    assert mesh_frequency(curves_of(faster), faster).factor == pytest.approx(1.0, abs=1e-6)
+
+
+@pytest.mark.parametrize(("teeth", "order", "first", "noise"), [
+    ((17, 51), 3, 0.05, 0.0), ((16, 32), 2, 0.05, 0.0), ((16, 32), 2, 0.01, 0.04),
+])  # fmt: skip
+def test_a_resonance_of_a_higher_mesh_order_is_at_the_right_speed(teeth, order, first, noise):
+    """The first order is small, as at a lightly damped resonance; it drifts, or has noise."""
+    pair = spurcheck.new_pair(teeth, module=2, face_width=20, speed=500, torque=30)
+    curves = curves_of(pair)
+    cycles = 2.0 * np.pi * curves.places / pair.geometry.mesh_period
+    wave = np.cos(order * cycles) + first * np.cos(cycles) + 0.003 * cycles
+    wave += noise * np.random.default_rng(5).standard_normal(wave.size)
+    resonant = replace(curves, channels=(replace(curves.channels[0], values=wave),))
+    assert mesh_frequency(resonant, pair).cause == ""
