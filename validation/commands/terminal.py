@@ -286,11 +286,14 @@ def note(text: str) -> None:
 
 
 @contextmanager
-def progress_bar(text: str) -> Iterator[Progress]:
-    """Show a progress bar on stderr while the block runs. Without a terminal nothing is drawn."""
+def progress_bar(text: str, *, moving: bool = True) -> Iterator[Progress]:
+    """Show a progress bar on stderr while the block runs. Without a terminal nothing is drawn.
+
+    A bar that is not ``moving`` stands still, and has no thread.
+    """
     from lumped.display.terminal_bar import bar_of_stages
 
-    with bar_of_stages(stderr()) as bar:
+    with bar_of_stages(stderr(), moving=moving) as bar:
         task = bar.add_task(text, total=1.0)
 
         def tell(fraction: float, stage: str = "", /) -> None:

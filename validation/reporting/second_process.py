@@ -6,23 +6,20 @@ the same time, whatever the pair is. A second process that dies, or a result tha
 only: the first process computes what is missing. Both processes compute the same numbers by the same
 functions. A limit of processor time is that of the process that computes.
 
-Messages are pickled tuples (kind, name, content) over standard input and output of the second process. The
-content is pickled by itself, so that a result that cannot be read spoils no other message.
+Messages are pickled tuples (kind, name, content) over two pipes. The content is pickled by itself, so that a
+result that cannot be read spoils no other message. ``validation.reporting.start`` starts the process.
 """
 
 from __future__ import annotations
 
 import pickle
-import subprocess
-import sys
 import threading
 import warnings
-from collections.abc import Container, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Container
+from contextlib import suppress
 from contextvars import ContextVar
-from typing import Any, NamedTuple
+from typing import IO, Any, NamedTuple, Protocol
 
-from lumped.cache import cores
 from lumped.errors import NumericalError
 from lumped.typing import Progress
 
@@ -47,7 +44,7 @@ WORK: dict[str, tuple[str, ...]] = {
 #: Time after which the first process says again what it waits for [s].
 _WAIT = 0.5
 #: The second process of the present command.
-_present: ContextVar[SecondProcess | None] = ContextVar("present", default=None)
+PRESENT: ContextVar[SecondProcess | None] = ContextVar("present", default=None)
 
 
 class Message(NamedTuple):
@@ -70,17 +67,36 @@ class Answer(NamedTuple):
     warnings: tuple[tuple[Warning | str, type[Warning], str, int], ...]
 
 
+class Started(Protocol):
+    """What is used of ``subprocess.Popen``."""
+
+    @property
+    def pid(self) -> int:
+        """Number of the process."""
+
+    @property
+    def stdin(self) -> IO[bytes] | None:
+        """Way to the process."""
+
+    @property
+    def stdout(self) -> IO[bytes] | None:
+        """Way back."""
+
+    def kill(self) -> None:
+        """End the process, whatever it does."""
+
+    def wait(self) -> int:
+        """Wait for the end of the process."""
+
+
 class SecondProcess:
     """A second process that computes ``WORK`` for one pair.
 
-    The process starts at once and imports; it computes from ``begin`` on. ``close`` ends it at any time.
+    ``process`` has started; it computes from ``begin`` on. ``close`` ends it at any time.
     """
 
-    def __init__(self) -> None:
-        # -P: a folder of the user cannot replace a package of the same name.
-        command = [sys.executable, "-P", "-m", "validation.reporting.worker"]
-        pipe = subprocess.PIPE
-        self._process = subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=subprocess.DEVNULL)
+    def __init__(self, process: Started) -> None:
+        self._process = process
         self._changed = threading.Condition()
         self._open = dict(WORK)
         self._under_way = ""
@@ -222,25 +238,9 @@ class SecondProcess:
         return Message(*pickle.load(stream))
 
 
-@contextmanager
-def second_process() -> Iterator[None]:
-    """Let reports in the block use a second process, where there are two processors."""
-    process = None
-    if cores() > 1:
-        with suppress(OSError):  # no process can be started
-            process = SecondProcess()
-    token = _present.set(process)
-    try:
-        yield
-    finally:
-        _present.reset(token)
-        if process is not None:
-            process.close()
-
-
 def present_process() -> SecondProcess | None:
     """Return the second process of the present command. None: there is none."""
-    return _present.get()
+    return PRESENT.get()
 
 
 def warn_again(answer: Answer) -> None:
