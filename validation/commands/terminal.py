@@ -26,6 +26,7 @@ from rich.text import Text
 from typer.core import TyperCommand
 
 from validation.files.formatting import number, quantity
+from validation.stop_signals import interruption_kept
 
 if TYPE_CHECKING:
     from lumped.typing import Progress
@@ -213,7 +214,8 @@ def guarded(command: Callable[..., None]) -> Callable[..., None]:
                 note(text)
 
         try:
-            with warnings.catch_warnings(), without_bars():  # a command draws its bar itself
+            # A command draws its bar itself.
+            with interruption_kept(), warnings.catch_warnings(), without_bars():
                 warnings.simplefilter("always", LawRangeWarning)
                 warnings.showwarning = show
                 for name, check in checks:

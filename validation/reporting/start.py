@@ -20,7 +20,8 @@ from typing import IO, NoReturn
 
 from lumped.cache import cores
 from validation.reporting.second_process import PRESENT, SecondProcess, Started
-from validation.reporting.worker import serve
+from validation.reporting.worker import ignore_interrupts, serve
+from validation.stop_signals import stop_signals
 
 #: Whether the second process is a fork.
 FORKS = sys.platform == "linux"
@@ -59,11 +60,16 @@ class Fork:
     def __init__(self) -> None:
         work, to_work = os.pipe()
         answers, to_answers = os.pipe()
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", DeprecationWarning)  # Python 3.12 counts threads of OpenBLAS too
-            self.pid = os.fork()
-        if self.pid == 0:
-            _run(work, to_answers, not_ours=(to_work, answers))
+        # A signal waits until the fork ignores it, else its KeyboardInterrupt would end the command twice.
+        before = signal.pthread_sigmask(signal.SIG_BLOCK, stop_signals())
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", DeprecationWarning)  # Python 3.12 counts threads of OpenBLAS
+                self.pid = os.fork()
+            if self.pid == 0:
+                _run(work, to_answers, not_ours=(to_work, answers))
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
         os.close(work)
         os.close(to_answers)
         self.stdin: IO[bytes] | None = os.fdopen(to_work, "wb")
@@ -89,6 +95,8 @@ def _run(work: int, to_answers: int, not_ours: tuple[int, int]) -> NoReturn:
     ``not_ours``: ends of the first process; open here too they would hide its end.
     """
     try:
+        ignore_interrupts()
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, stop_signals())
         for one in not_ours:
             os.close(one)
         nowhere = os.open(os.devnull, os.O_RDWR)

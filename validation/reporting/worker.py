@@ -75,9 +75,13 @@ def _receive(stream: BinaryIO, received: queue.SimpleQueue[Message]) -> None:
         os._exit(0)
 
 
+def ignore_interrupts() -> None:
+    """Ignore Ctrl-C, which goes to both processes: it ends the first one, which ends this one."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
 def serve(work: BinaryIO, to_answers: BinaryIO) -> NoReturn:
     """Compute what the first process asks for, until it says that this is all, or ends."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C ends the first process, which ends this one
     answers = Answers(to_answers)
     received: queue.SimpleQueue[Message] = queue.SimpleQueue()
     threading.Thread(target=_receive, args=(work, received), daemon=True).start()
@@ -99,6 +103,7 @@ def serve(work: BinaryIO, to_answers: BinaryIO) -> NoReturn:
 
 def main() -> NoReturn:
     """Compute for the process that started this interpreter."""
+    ignore_interrupts()
     gc.set_threshold(5_000_000)  # as in the command itself
     to_answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what a library prints is no message

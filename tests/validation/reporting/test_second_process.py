@@ -245,6 +245,35 @@ def test_a_fork_without_work_ends_with_the_first_process():
     until(lambda: not is_alive(second))
 
 
+#: A signal arrives in the fork before it can ignore it.
+_AT_ONCE = """
+import os, signal, time
+from validation.reporting import start
+from validation.stop_signals import interrupt_once
+signal.signal(signal.SIGINT, signal.default_int_handler)
+interrupt_once()
+fork = os.fork
+def interrupted():
+    number = fork()
+    if number == 0:
+        os.kill(os.getpid(), signal.SIGINT)
+    return number
+os.fork = interrupted
+start.serve = lambda work, answers: answers.write(b"serves") and answers.flush()
+try:
+    second = start.Fork()
+    print(second.stdout.read().decode(), signal.pthread_sigmask(signal.SIG_BLOCK, ()), flush=True)
+except KeyboardInterrupt:
+    print("the fork goes on", flush=True)
+"""
+
+
+@pytest.mark.skipif(not start.FORKS, reason="no forks here")
+def test_a_signal_in_the_first_moment_of_a_fork_waits_until_the_fork_ignores_it():
+    said = subprocess.check_output([sys.executable, "-c", _AT_ONCE], text=True)
+    assert said.strip() == "serves set()"
+
+
 #: Writes the threads at the fork into a file, and starts no process.
 _AT_FORK = """
 import os, pathlib, threading
@@ -279,9 +308,15 @@ def test_the_command_forks_while_it_has_one_thread(tmp_path):
 
 @pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="children are found in /proc")
 @pytest.mark.parametrize("forks", [True, False], ids=["fork", "interpreter"])
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
-def test_no_second_process_and_no_half_report_outlive_the_command(number, forks, tmp_path):
-    """Ctrl-C goes to all processes of a terminal, SIGKILL to the first process alone."""
+@pytest.mark.parametrize(
+    ("number", "seconds"),
+    [(signal.SIGINT, seconds) for seconds in (0.0, 0.4, 1.0, 3.0)] + [(signal.SIGKILL, 1.0)],
+)
+def test_no_second_process_and_no_half_report_outlive_the_command(number, seconds, forks, tmp_path):
+    """Ctrl-C goes to all processes of a terminal, SIGKILL to the first process alone.
+
+    ``seconds``: from the start of the second process. Both are in their imports or in their work.
+    """
     # Where the tests themselves run in the background of a shell, their children ignore Ctrl-C.
     listens = "import signal as s; s.signal(s.SIGINT, s.default_int_handler); "
     kind = f"import validation.reporting.start as r; r.FORKS = {forks}; "
@@ -295,7 +330,7 @@ def test_no_second_process_and_no_half_report_outlive_the_command(number, forks,
         second = int(children.read_text().split()[0])
         if not forks:
             until(lambda: "worker" in Path(f"/proc/{second}/cmdline").read_text())
-        time.sleep(1.0)  # it is in its imports or its work
+        time.sleep(seconds)
         if number == signal.SIGINT:
             os.killpg(first.pid, number)
             assert first.wait(PATIENCE) == 130
