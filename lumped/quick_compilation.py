@@ -115,7 +115,7 @@ def _without_lock_events() -> Iterator[None]:
 @contextmanager
 def _replaced_steps() -> Iterator[None]:
     own_steps = [vars(owner)[name] for owner, name in _STEPS]
-    steps = (
+    steps: tuple[Any, ...] = (
         _list_vars_of_statement,
         _list_vars_of_expression,
         _call_type(own_steps[2]),
