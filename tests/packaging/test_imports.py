@@ -2,6 +2,7 @@
 
 import ast
 import json
+import math
 import subprocess
 import sys
 import tomllib
@@ -107,6 +108,19 @@ def test_a_report_without_a_record_loads_nothing_that_reads_and_judges_records()
     assert "validation.reporting.chapters.record" in modules
     assert not [name for name in modules if name.startswith("validation.check")]
     assert "scipy.stats" not in modules  # a third of a second, before the first result
+
+
+def test_samples_do_not_import_scipy_stats_once_their_points_are_stored():
+    """It takes a quarter of a second, in both processes of a report."""
+    samples = (
+        "import lumped; from validation.prediction.uncertainty import uncertainty; "
+        "uncertainty(lumped.load_gear_pair('nasa_28_28').with_({'uncertainty': {"
+        "'operating.pinion_torque': '+- 4 %'}}), 16)"
+    )
+    loaded(samples, math.inf)  # another run has stored the points, or this one does
+    _, modules = loaded(samples, math.inf)
+    assert "validation.prediction.sobol" in modules
+    assert "scipy.stats" not in modules
 
 
 #: In the place of the report it prints what is imported of dask.

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from scipy.stats import binom, qmc
+from scipy.stats import binom, qmc, rankdata
 
 import floquet
 import lumped
@@ -14,11 +14,12 @@ from tests.unlike_pairs import all_assumed, known_sizes, unlike_pair
 from validation.exchange.new_pair_file import new_pair
 from validation.prediction.inputs import forms_beside, uncertain_inputs
 from validation.prediction.motion import predicted
+from validation.prediction.sobol import sobol_points
 from validation.prediction.uncertainty import (
     _ends,
+    _ranks,
     importance_of,
     percentile_interval,
-    sobol_points,
     speed_band,
     teeth_band,
     transmission_error,
@@ -114,6 +115,30 @@ def test_a_time_limit_has_no_meaning_on_an_executor():
             uncertainty(LINEAR, 16, seconds=5.0, executor=executor)
         with pytest.raises(ParameterError, match=r"an executor of concurrent\.futures"):
             uncertainty(LINEAR, 16, executor="tcp://head:8786")
+
+
+@pytest.mark.parametrize("count", [8, 23, 32, 64, 128, 500])
+def test_the_interval_of_a_percentile_is_that_of_the_binomial_distribution(count):
+    for percentile in (5.0, 50.0, 95.0):
+        low, high = binom.ppf([0.05, 0.95], count, percentile / 100.0)
+        assert percentile_interval(count, percentile) == (max(low - 1, 0), min(high, count - 1))
+
+
+def test_ranks_are_those_of_the_library():
+    rng = np.random.default_rng(5)
+    columns = np.column_stack([rng.normal(size=40), rng.integers(0, 5, 40), np.full(40, 2.0)])
+    np.testing.assert_array_equal(_ranks(columns), rankdata(columns, axis=0))
+
+
+@pytest.mark.parametrize(("samples", "seed"), [(16, 1), (128, 1), (256, 1), (16, 2)])
+def test_stored_points_are_those_of_the_library(samples, seed, tmp_path, monkeypatch):
+    """Seed 1, up to 128 points, is stored. The first points of a sequence do not depend on their number."""
+    monkeypatch.setattr("lumped.cache.user_cache_path", lambda *_, **__: tmp_path)
+    drawn = qmc.Sobol(5, rng=np.random.default_rng(seed)).random(samples)
+    importance = np.arange(5.0)[::-1]  # dimensions in their order
+    for _ in ("drawn", "read"):
+        np.testing.assert_array_equal(sobol_points(importance, samples, seed), drawn)
+    assert any(tmp_path.rglob("*.npz")) == (seed == 1 and samples <= 128)
 
 
 def test_the_first_dimensions_are_those_of_the_inputs_that_matter_most():
