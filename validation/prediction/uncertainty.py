@@ -11,6 +11,7 @@ binomial distribution of order statistics, David and Nagaraja, Order Statistics,
 from __future__ import annotations
 
 import functools
+import itertools
 import math
 import threading
 import warnings
@@ -285,9 +286,27 @@ def speed_band(
     have a motion. Attributes ``taken``, the number of begun samples, and ``asked``, the number of requested
     samples
     """
-    sampled = each_sample(
-        pair, at_operating_speed, samples, lambda one: _peaks(one, speeds_rpm, step_angle), seconds
+    sampled = peaks_over_speed(pair, speeds_rpm, at_operating_speed, samples, step_angle, seconds)
+    return range_over_speed(speeds_rpm, sampled)
+
+
+def peaks_over_speed(
+    pair: GearPair,
+    speeds_rpm: FloatArray,
+    at_operating_speed: xr.Dataset,
+    samples: int,
+    step_angle: float,
+    seconds: float | None,
+    part: slice = slice(None),
+) -> Sampled[FloatArray]:
+    """Return the peaks to peaks (speed,) of each sample. Arguments as in `speed_band` and `each_sample`."""
+    return each_sample(
+        pair, at_operating_speed, samples, lambda one: _peaks(one, speeds_rpm, step_angle), seconds, part
     )
+
+
+def range_over_speed(speeds_rpm: FloatArray, sampled: Sampled[FloatArray]) -> xr.Dataset:
+    """Return the dataset of `speed_band`."""
     low = high = np.full(np.shape(speeds_rpm), np.nan)
     if len(sampled.results) >= least_samples(sampled.asked, LEAST_BAND):
         low, high = np.nanpercentile(np.array(sampled.results), PERCENTILES[::2], axis=0)
@@ -347,11 +366,13 @@ def each_sample(
     samples: int,
     run: Callable[[GearPair], T],
     seconds: float | None,
+    part: slice = slice(None),
 ) -> Sampled[T]:
     """Return results at samples of the inputs until the processor time [s] is over.
 
     ``run`` computes a machine. ``at_operating_speed`` as in `speed_band`; None: the teeth of a tolerance
-    class alone are drawn, and all other inputs are as given.
+    class alone are drawn, and all other inputs are as given. ``part``: the samples that are computed; the
+    processor time is that of the part.
     """
     deadline = Deadline(seconds)
     inputs = uncertain_inputs(pair)
@@ -366,7 +387,8 @@ def each_sample(
         seed = int(at_operating_speed.attrs["seed"])
     results = list[T]()
     taken = 0
-    for point in sobol_points(importance, samples, seed):
+    points = sobol_points(importance, samples, seed)[part]
+    for point in points:
         if deadline.passed:
             break
         taken += 1
@@ -374,7 +396,22 @@ def each_sample(
             results.append(run(varied(pair, [(one, float(u)) for one, u in zip(inputs, point, strict=True)])))
         except SpurcheckError:
             continue
-    return Sampled(tuple(results), taken, samples)
+    return Sampled(tuple(results), taken, len(points))
+
+
+def parts_of(samples: int, parts: int) -> list[slice]:
+    """Return the parts of the samples for ``each_sample``, of equal length to one sample."""
+    ends = [samples * number // parts for number in range(parts + 1)]
+    return [slice(low, high) for low, high in itertools.pairwise(ends)]
+
+
+def joined(parts: Sequence[Sampled[T]]) -> Sampled[T]:
+    """Return the results of all parts as if one call had computed them."""
+    return Sampled(
+        tuple(result for part in parts for result in part.results),
+        sum(part.taken for part in parts),
+        sum(part.asked for part in parts),
+    )
 
 
 def _peaks(pair: GearPair, speeds_rpm: FloatArray, step_angle: float) -> FloatArray:

@@ -37,9 +37,9 @@ WORK: dict[str, tuple[str, ...]] = {
     "proven_stability": (),
     "resonance": (),
     "orders_over_speed": (),
-    "band": ("uncertainty",),
+    **{f"band_{number}": ("uncertainty",) for number in (1, 2, 3, 4)},
     "teeth_band": ("uncertainty",),
-    "assumed_teeth": ("uncertainty", "like_loses_contact"),
+    **{f"teeth_{number}": ("uncertainty", "like_loses_contact") for number in (1, 2)},
 }
 #: Time after which the first process says again what it waits for [s].
 _WAIT = 0.5

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import xarray as xr
 from scipy.stats import binom, qmc, rankdata
 
 import floquet
@@ -19,7 +20,11 @@ from validation.prediction.uncertainty import (
     _ends,
     _ranks,
     importance_of,
+    joined,
+    parts_of,
+    peaks_over_speed,
     percentile_interval,
+    range_over_speed,
     speed_band,
     teeth_band,
     transmission_error,
@@ -154,6 +159,19 @@ def test_the_first_dimensions_are_those_of_the_inputs_that_matter_most():
     np.testing.assert_allclose(share, [0.2, 1.0, 0.5])
     sobol = qmc.Sobol(3, rng=np.random.default_rng(3)).random(8)
     np.testing.assert_array_equal(sobol_points(share, 8, 3)[:, [1, 2, 0]], sobol)
+
+
+def test_parts_of_the_samples_are_all_samples(torque):
+    """Seven parts of 16 samples: of three and of two."""
+    speeds = np.array([700.0, 900.0])
+    arguments = (LINEAR, speeds, torque, 16, 1.0, None)
+    whole = peaks_over_speed(*arguments)
+    parts = parts_of(16, 7)
+    assert [part.stop - part.start for part in parts] == [2, 2, 2, 3, 2, 2, 3]
+    again = joined([peaks_over_speed(*arguments, part) for part in reversed(parts)][::-1])
+    np.testing.assert_array_equal(again.results, whole.results)
+    assert (again.taken, again.asked) == (whole.taken, whole.asked) == (16, 16)
+    xr.testing.assert_identical(range_over_speed(speeds, again), speed_band(LINEAR, speeds, torque, 16))
 
 
 def test_the_band_over_speed_is_about_the_sweep(torque):

@@ -185,7 +185,7 @@ def test_what_a_waiting_process_takes_has_all_that_it_needs(two_processors):
         process = present_process()
         assert process.spare(set()) == "orders_over_speed"
         assert process.spare({"uncertainty"}) == "teeth_band"
-        assert process.spare({"uncertainty", "like_loses_contact"}) == "assumed_teeth"
+        assert process.spare({"uncertainty", "like_loses_contact"}) == "teeth_2"
         for name in WORK:
             assert process.fetch(name, lambda *_: None) is None
         assert process.spare({"uncertainty", "like_loses_contact", *WORK}) is None
