@@ -13,6 +13,7 @@ import xarray as xr
 import floquet
 import lumped
 import multibody
+from floquet.engine.many_multipliers import quick_multipliers
 from floquet.gear.axes import chart_axes, operating_rpm, speed_range
 from floquet.gear.jump_search import JumpSearch, contact_loss_windows, search_jumps
 from floquet.gear.motions import GearOrbit
@@ -505,6 +506,11 @@ class Results:
         """Verdicts of the stability chart over speed, at the damping of the pair."""
         nearest = int(np.abs(self.chart["damping_ratio"].to_numpy() - self.pair.mesh.damping_ratio).argmin())
         return np.asarray(self.chart["verdict"].isel(damping_ratio=nearest).to_numpy(), dtype=np.int64)
+
+    @computed_once
+    def eigenvalue_kernel(self) -> None:
+        """Compile or load the kernel of all multipliers, which depends on no pair."""
+        quick_multipliers(np.eye(2)[None], np.zeros(1))
 
     @computed_once
     def chart(self) -> xr.Dataset:

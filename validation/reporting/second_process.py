@@ -25,21 +25,25 @@ from lumped.typing import Progress
 
 #: What the second process computes, in this order: property of ``Results`` -> properties that it needs first,
 #: from either process. What needs the multibody model or Floquet theory is here, so that of most kernels
-#: each is loaded, or compiled, by one process alone.
+#: each is loaded, or compiled, by one process alone. In a first report the process begins with a kernel that
+#: needs no other one, while the first process compiles those that both need. The chart compiles most of all
+#: behind the cross-check, so it comes next. The last two are what the first process takes first where it
+#: waits: their kernels are those of the chart.
 WORK: dict[str, tuple[str, ...]] = {
+    "eigenvalue_kernel": (),
     "check": (),
     "run_on_shafts": (),
+    "chart": (),
     "sweep": (),
     "contact_loss_windows": ("sweep", "like_loses_contact"),
     "jump_search": ("contact_loss_windows",),
-    "chart": (),
-    "multipliers": (),
-    "proven_stability": (),
     "resonance": (),
     "orders_over_speed": (),
     **{f"band_{number}": ("uncertainty",) for number in (1, 2, 3, 4)},
     "teeth_band": ("uncertainty",),
     **{f"teeth_{number}": ("uncertainty", "like_loses_contact") for number in (1, 2)},
+    "multipliers": (),
+    "proven_stability": (),
 }
 #: Time after which the first process says again what it waits for [s].
 _WAIT = 0.5

@@ -183,12 +183,31 @@ def test_an_error_is_raised_again_and_a_process_that_waits_computes_something_el
 def test_what_a_waiting_process_takes_has_all_that_it_needs(two_processors):
     with second_process():
         process = present_process()
+        for name in ("proven_stability", "multipliers"):
+            assert process.spare(set()) == name
+            assert process.fetch(name, lambda *_: None) is None
         assert process.spare(set()) == "orders_over_speed"
         assert process.spare({"uncertainty"}) == "teeth_band"
         assert process.spare({"uncertainty", "like_loses_contact"}) == "teeth_2"
         for name in WORK:
             assert process.fetch(name, lambda *_: None) is None
         assert process.spare({"uncertainty", "like_loses_contact", *WORK}) is None
+
+
+def test_the_kernel_that_is_compiled_first_is_the_one_of_all_multipliers():
+    """Of other types of arguments it would be compiled twice."""
+    program = """
+import lumped
+from floquet.engine.kernels.eigenvalue_bounds import spectra
+from validation.reporting.effort import QUICK
+from validation.reporting.results import Results
+results = Results(lumped.load_gear_pair("nasa_28_28"), QUICK)
+results.eigenvalue_kernel
+first = set(spectra.signatures)
+results.multipliers, results.chart
+print(len(first), first == set(spectra.signatures))
+"""
+    assert subprocess.check_output([sys.executable, "-c", program], text=True).split() == ["1", "True"]
 
 
 def test_work_is_a_list_of_results():
