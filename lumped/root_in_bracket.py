@@ -98,62 +98,26 @@ def roots_in_brackets(
     >>> roots_in_brackets(lambda x: x * x - 2.0, np.array([0.0, -2.0]), np.array([2.0, 0.0]), xtol=1e-15)
     array([ 1.41421356, -1.41421356])
     """
-    roots = np.array(low, dtype=np.float64)
-    left = np.arange(roots.size)  # brackets whose root is not known yet
-    last = roots.copy()
+    arguments = np.array(low, dtype=np.float64)
+    if not arguments.size:
+        return arguments
+    from lumped.bracket_steps import Brackets, next_arguments  # geometry needs no compiled code
+
     beyond = np.array(high, dtype=np.float64)
-    if not left.size:
-        return roots
-    f_last, f_beyond = np.split(function(np.concatenate([last, beyond])), 2)
-    if not np.all((f_last <= 0.0) & (f_beyond >= 0.0) | (f_last >= 0.0) & (f_beyond <= 0.0)):
+    values, f_beyond = np.split(function(np.concatenate([arguments, beyond])), 2)
+    if not np.all((values <= 0.0) & (f_beyond >= 0.0) | (values >= 0.0) & (f_beyond <= 0.0)):
         raise ValueError("A function needs opposite signs at the ends of a bracket.")
-    before = last
-    f_before = f_last
+    ends = (arguments.copy(), values.copy(), beyond, f_beyond.copy())
+    brackets = Brackets(*ends, *np.zeros((3, arguments.size)))
+    left = np.arange(arguments.size)  # the first ones: brackets whose root is not known yet
     for _ in range(_MOST_STEPS):
-        best = np.where(np.abs(f_last) < np.abs(f_beyond), last, beyond)
-        width = np.abs(beyond - last)
-        tolerance = 0.5 * (xtol + ROUNDING * np.abs(best))
-        done = (width < 2.0 * tolerance) | (f_last == 0.0) | (f_beyond == 0.0)
-        roots[left[done]] = best[done]
-        if done.all():
-            return roots
-        left = left[~done]
-        last, f_last, before, f_before, beyond, f_beyond, width, tolerance = (
-            part[~done] for part in (last, f_last, before, f_before, beyond, f_beyond, width, tolerance)
-        )
-        share = _inverse_parabola(last, f_last, beyond, f_beyond, before, f_before)
-        least = tolerance / width
-        trial = last + np.clip(share, least, 1.0 - least) * (beyond - last)
-        f_trial = function(trial)
-        if np.isnan(f_trial).any():
+        count = next_arguments(brackets, left, values, xtol, ROUNDING, arguments)
+        if count == 0:
+            return brackets.root
+        values = np.ascontiguousarray(function(arguments[:count]))
+        if np.isnan(values).any():
             raise ValueError("The function value in a bracket is NaN; the solver cannot continue.")
-        same = np.signbit(f_trial) == np.signbit(f_last)
-        before = np.where(same, last, beyond)
-        f_before = np.where(same, f_last, f_beyond)
-        beyond = np.where(same, beyond, last)
-        f_beyond = np.where(same, f_beyond, f_last)
-        last = trial
-        f_last = f_trial
-    raise RuntimeError(f"Failed to converge after {_MOST_STEPS} iterations, value is {last[0]}.")
-
-
-def _inverse_parabola(
-    last: FloatArray,
-    f_last: FloatArray,
-    beyond: FloatArray,
-    f_beyond: FloatArray,
-    before: FloatArray,
-    f_before: FloatArray,
-) -> FloatArray:
-    """Share of the way from ``last`` to ``beyond`` where the inverse parabola has its root; 0.5: unsafe."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        place = (last - beyond) / (before - beyond)
-        value = (f_last - f_beyond) / (f_before - f_beyond)
-        safe = (value**2 < place) & ((1.0 - value) ** 2 < 1.0 - place)
-        secant = f_last / (f_beyond - f_last) * f_before / (f_beyond - f_before)
-        bend = (before - last) / (beyond - last) * f_last / (f_before - f_last)
-        share = secant + bend * f_beyond / (f_before - f_beyond)
-    return np.where(safe, share, 0.5)
+    raise RuntimeError(f"Failed to converge after {_MOST_STEPS} iterations, value is {arguments[0]}.")
 
 
 def _interpolated(

@@ -63,6 +63,10 @@ def ladder_text(result: Check) -> str:
     for number, step in enumerate(result.explanations, start=1):
         lines.append(f"  {number}. {step.sentence}: the misfit is then {percent(step.misfit)}")
         lines += [f"     or: {other.sentence}: {percent(other.misfit)}" for other in step.alternatives]
+    if result.ladder is not None:
+        lines += [
+            f"     alone: {other.sentence}: {percent(other.misfit)}" for other in result.ladder.others_alone
+        ]
     lines += [f"  {remark}" for remark in result.remarks]
     return "\n".join(lines)
 

@@ -1,7 +1,8 @@
 """What the comparison says of the wrong models: the truth beside the ladder of explanations.
 
     python -m benchmarks.foreign_models.ladder first|second|third|fourth|fifth|sixth|seventh|eighth|ninth
-        |tenth [words]
+        |tenth
+        |eleventh [words]
 
 A reader decides whether the first explanation is the truth in other words: the registry has no names of the
 mistakes, and the mistakes have no names of the registry.
@@ -17,6 +18,7 @@ from collections.abc import Callable, Mapping, Sequence
 from benchmarks.foreign_models.cases import Case
 from benchmarks.foreign_models.cases import cases as first_set
 from benchmarks.foreign_models.eighth import judging as eighth_set
+from benchmarks.foreign_models.eleventh import judging as eleventh_set
 from benchmarks.foreign_models.fifth import judging as fifth_set
 from benchmarks.foreign_models.fourth import judging as fourth_set
 from benchmarks.foreign_models.ninth import judging as ninth_set
@@ -38,6 +40,7 @@ SETS: Mapping[str, Callable[[str], Sequence[Case]]] = {
     "eighth": eighth_set,
     "ninth": ninth_set,
     "tenth": tenth_set,
+    "eleventh": eleventh_set,
 }
 
 
@@ -55,6 +58,8 @@ def report(case: Case) -> None:
             f"    {step.name} {step.factor}: {step.misfit:.4f}{' or ' + others if others else ''}", flush=True
         )
         print(f"        {step.sentence}")
+    for one in () if result.ladder is None else result.ladder.alone:
+        print(f"    alone: {one.name} {one.factor}: {one.misfit:.4f}", flush=True)
 
 
 def main(arguments: Sequence[str]) -> None:

@@ -199,6 +199,14 @@ def spring_load(pair: Record, approach: float, contact: Record) -> None:
     contact.tangent = pair.stiffness
 
 
+@inlined
+def follow_tangent(change: float, law: ContactLaw, contact: Record) -> None:
+    """Start the Newton steps from the load on the tangent, after a change of the compression [m]."""
+    load = contact.load + contact.tangent * change
+    if law.softening != 0.0 and contact.load > 0.0 and load > 0.0:
+        contact.load = load
+
+
 # Optimised first: the loop over a motion by momentary load is a tenth faster, and compiles no longer.
 @inlined_optimised
 def write_elastic_loads(
@@ -221,8 +229,8 @@ def write_elastic_loads(
     pairs, line, law : the pairs without load, the line of action, the law of the contact
     coupling : (pairs, pairs) w_ij by which the load of pair j moves pair i [m/N]
     matrix : (pairs, pairs) memory for ``coupled_loads``; its content on entry has no meaning
-    contacts : written. Their loads on entry are the start of the Newton steps: the loads of an approach close
-        by make the steps few. The result does not depend on them beyond ``law.converged``
+    contacts : written. On entry they are those of an approach close by, or 0. The Newton steps start on their
+        tangents, which makes the steps few. The result does not depend on them beyond ``law.converged``
     """
     for i in range(pairs.size):
         pair = pairs[i]
@@ -234,7 +242,9 @@ def write_elastic_loads(
         elif law.prescribed:
             spring_load(pair, approach, contact)
         else:
+            former = contact.compression
             write_gap_unless_apart(pair, approach, line, law, contact)
+            follow_tangent(contact.compression - former, law, contact)
             if not law.coupled:
                 single_load(pair.stiffness, law, contact)
     if law.coupled:

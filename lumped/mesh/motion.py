@@ -44,7 +44,6 @@ class Body(NamedTuple):
     ----------
     constant : (m, terms) coefficients of each acceleration, without those that are 0 in all rows
     states : (m, terms) the place in z, z' to which each coefficient belongs
-    torque : (m,) acceleration by the mean torques
     deflection : (m,) u, with delta = u . z
     per_normal, per_friction_force, per_friction_moment, per_separating : (m,) acceleration per unit of each
         field of FORCE
@@ -59,7 +58,6 @@ class Body(NamedTuple):
 
     constant: FloatArray
     states: IntArray
-    torque: FloatArray
     deflection: FloatArray
     per_normal: FloatArray
     per_friction_force: FloatArray
@@ -84,14 +82,23 @@ class CycleSpan(NamedTuple):
 
 
 class Run(NamedTuple):
-    """What a run recorded, and where it ended.
+    """One of ``Runs``: states (outputs, 2m), loads (pairs, outputs), end (2m,) and work, (1,) WORK."""
+
+    states: FloatArray
+    loads: FloatArray
+    end: FloatArray
+    work: Records
+
+
+class Runs(NamedTuple):
+    """What runs recorded, and where they ended.
 
     Attributes
     ----------
-    states : (outputs, 2m) states at the outputs of the recorded cycles
-    loads : (pairs, outputs) normal load of each pair [N]
-    end : (2m,) state at the end
-    work : (1,) WORK in the recorded cycles
+    states : (runs, outputs, 2m) states at the outputs of the recorded cycles
+    loads : (runs, pairs, outputs) normal load of each pair [N]
+    end : (runs, 2m) state at the end
+    work : (runs,) WORK in the recorded cycles
     """
 
     states: FloatArray
@@ -101,16 +108,21 @@ class Run(NamedTuple):
 
 
 @inlined
-def accelerate(state: FloatArray, force: MeshForce, line: Record, body: Body, rate: FloatArray) -> None:
-    """Write the rates z', z'' (2m,) of a state z, z' (2m,) under a force of the mesh."""
-    m = body.torque.size
+def accelerate(
+    state: FloatArray, torque: FloatArray, force: MeshForce, line: Record, body: Body, rate: FloatArray
+) -> None:
+    """Write the rates z', z'' (2m,) of a state z, z' (2m,) under a force of the mesh.
+
+    ``torque`` (m,) is the acceleration by the mean torques.
+    """
+    m = torque.size
     for j in range(m):
         per_normal = (
             body.per_normal[j]
             + body.per_moment[0, j] * line.moment_pinion
             + body.per_moment[1, j] * line.moment_gear
         )
-        acceleration = body.torque[j] + force.normal * per_normal
+        acceleration = torque[j] + force.normal * per_normal
         acceleration += force.friction_force * body.per_friction_force[j]
         acceleration += force.friction_moment * body.per_friction_moment[j]
         acceleration += force.separating * body.per_separating[j]
@@ -123,7 +135,7 @@ def accelerate(state: FloatArray, force: MeshForce, line: Record, body: Body, ra
 @inlined
 def add_ripples(cycle: int, phase: float, ripples: Records, body: Body, rate: FloatArray) -> None:
     """Add the accelerations by the harmonics of the torques at a phase of a mesh cycle."""
-    m = body.torque.size
+    m = body.deflection.size
     for n in range(ripples.size):
         ripple = ripples[n]
         turn = ripple.angle * ((cycle + phase) % ripple.cycles) + ripple.start
@@ -181,7 +193,7 @@ def add_work(
     work: Record,
 ) -> None:
     """Add the work of all powers at a state during a time [s]."""
-    m = body.torque.size
+    m = body.deflection.size
     pinion = dot(body.turning[0], state, m)
     gear = dot(body.turning[1], state, m)
     off_line = dot(body.off_line, state, m)
@@ -236,32 +248,38 @@ def run_cycles(
     body: Body,
     ripples: Records,
     initial: FloatArray,
+    torques: FloatArray,
     mesh: CyclePairs,
+    contacts: Records,
     work: Records,
-) -> Run:
-    """Follow the motion over mesh cycles from a state at the start of the first one.
+) -> Runs:
+    """Follow the motions over mesh cycles from states at the start of the first one.
+
+    All runs take a stage of a step before any run takes the next one: the pairs there are read once.
 
     Parameters
     ----------
     tables : its nodes are start, middle and end of each step
-    initial : (2m,) state
-    mesh : memory. Where all cycles are alike, a further run with this memory finds the pairs written
-    work : (1,) WORK, to which the work in the recorded cycles is added
+    initial, torques : (runs, 2m) states, and (runs, m) accelerations by the mean torques
+    mesh : memory. Where all cycles are alike, a further call with this memory finds the pairs written
+    contacts : (runs, pairs) CONTACT, from whose loads the Newton steps start
+    work : (runs,) WORK, to which the work in the recorded cycles is added
     """
-    m = body.torque.size
+    runs, m = torques.shape
     count = tables.position.shape[2]
     steps = tables.edges.size - 1
     outputs = 0
     for step in range(steps):
         outputs += span.recorded * tables.outputs[step]
-    states = np.empty((outputs, 2 * m))
-    loads = np.empty((count, outputs))
-    state = np.empty(2 * m)
+    states = np.empty((runs, outputs, 2 * m))
+    loads = np.empty((runs, count, outputs))
+    state = np.empty((runs, 2 * m))
     stage_state = np.empty(2 * m)
-    rates = np.empty((4, 2 * m))
-    for j in range(2 * m):
-        state[j] = initial[j]
-        rates[-1, j] = 0.0
+    rates = np.empty((runs, 4, 2 * m))
+    for run in range(runs):
+        for j in range(2 * m):
+            state[run, j] = initial[run, j]
+            rates[run, -1, j] = 0.0
     edges = tables.edges
     normal = np.empty(count)
     row = 0
@@ -274,23 +292,28 @@ def run_cycles(
         for step in range(steps):
             length = edges[step + 1] - edges[step]
             h = length * tables.duration
+            is_output = records and tables.outputs[step] == 1
             for stage in range(4):
                 node = (stage + 1) // 2
-                write_stage_state(stage, h, state, rates, stage_state)
-                approach = dot(body.deflection, stage_state, 0)
-                approach_rate = dot(body.deflection, stage_state, m)
                 pairs = mesh.pairs[step, node]
                 line = mesh.lines[step, node]
                 coupling = tables.coupling[step, node]
-                write_elastic_loads(approach, pairs, line, tables.law, coupling, mesh.matrix, mesh.contacts)
-                force = unilateral_force(approach_rate, pairs, line, tables.law, mesh.contacts, normal)
-                accelerate(stage_state, force, line, body, rates[stage])
-                add_ripples(cycle, edges[step] + 0.5 * node * length, ripples, body, rates[stage])
-                if records:
-                    weight = h / (3.0 if 0 < stage < 3 else 6.0)
-                    add_work(weight, stage_state, approach_rate, force, line, body, work[0])
-                if records and stage == 0 and tables.outputs[step] == 1:
-                    write_output(row, state, normal, states, loads)
-                    row += 1
-            advance(h, rates, state)
-    return Run(states, loads, state, work)
+                for run in range(runs):
+                    write_stage_state(stage, h, state[run], rates[run], stage_state)
+                    approach = dot(body.deflection, stage_state, 0)
+                    approach_rate = dot(body.deflection, stage_state, m)
+                    contact = contacts[run]
+                    write_elastic_loads(approach, pairs, line, tables.law, coupling, mesh.matrix, contact)
+                    force = unilateral_force(approach_rate, pairs, line, tables.law, contact, normal)
+                    rate = rates[run, stage]
+                    accelerate(stage_state, torques[run], force, line, body, rate)
+                    add_ripples(cycle, edges[step] + 0.5 * node * length, ripples, body, rate)
+                    if records:
+                        weight = h / (3.0 if 0 < stage < 3 else 6.0)
+                        add_work(weight, stage_state, approach_rate, force, line, body, work[run])
+                    if is_output and stage == 0:
+                        write_output(row, state[run], normal, states[run], loads[run])
+            row += 1 if is_output else 0
+            for run in range(runs):
+                advance(h, rates[run], state[run])
+    return Runs(states, loads, state, work)

@@ -72,7 +72,7 @@ class MeshTables(NamedTuple):
     pinion, gear : (z1,), (z2,) TOOTH of each tooth
     turning : (2 + ripples,) TURNING
     turned : (steps, nodes, 2 + ripples, 2) cosine and sine of the angle of each TURNING since the start of
-        the cycle
+        the cycle; 0 where it has no amplitude
     cotangent : of the operating pressure angle
     first : (2,) teeth of pinion and gear that are at A at t = 0, counted from 0
     period : mesh cycles after which all repeats

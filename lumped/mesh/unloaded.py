@@ -92,6 +92,34 @@ def reliefs_at(reliefs: Records, xi: FloatArray) -> FloatArray:
     return total
 
 
+@compiled
+def relief_slopes(
+    reliefs: Records, start: float, end: float, position: FloatArray, offsets: FloatArray, weights: FloatArray
+) -> FloatArray:
+    """Slope over xi of the sum of some reliefs (m,) at positions (steps, nodes, pairs), by differences [-].
+
+    Parameters
+    ----------
+    start, end : A and D, beyond which reliefs have their values at A and D [m]
+    offsets, weights : (3, nodes) distances from a node to the places of a difference [m], and the weights of
+        the values there [1/m]
+    """
+    slopes = np.zeros(position.shape)
+    for step in range(position.shape[0]):
+        for node in range(position.shape[1]):
+            for pair in range(position.shape[2]):
+                place = position[step, node, pair]
+                if not start < place < end:
+                    continue  # no relief changes there
+                for k in range(offsets.shape[0]):
+                    on_flanks = min(max(place + offsets[k, node], start), end)
+                    total = 0.0
+                    for j in range(reliefs.size):
+                        total += relief_at(reliefs[j], on_flanks)
+                    slopes[step, node, pair] += weights[k, node] * total
+    return slopes
+
+
 @inlined
 def write_coupling(
     neighbours: NeighbourLaws, position: FloatArray, near: BoolArray, coupling: FloatArray

@@ -12,7 +12,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from lumped.errors import SlowPairError
-from lumped.mesh.motion import WORK, Body, CycleSpan, Run, run_cycles
+from lumped.mesh.motion import WORK, Body, CycleSpan, Run, Runs, run_cycles
 from lumped.mesh.records import CONTACT, Records
 from lumped.mesh.tables import CyclePairs, MeshTables, cycle_pairs
 from lumped.model.equations import Y_G, Y_P
@@ -119,19 +119,25 @@ class MomentaryRuns:
         return cycle_pairs(self.tables)
 
     def run(self, start: int, cycles: int, recorded: int, state: FloatArray, torques: FloatArray) -> Run:
-        """Follow the motion over mesh cycles.
+        """Follow the motion from a state (2m,) over mesh cycles; arguments as of ``together``."""
+        runs = self.together(CycleSpan(start, cycles, recorded), state[None], torques[None])
+        return Run(runs.states[0], runs.loads[0], runs.end[0], runs.work)
+
+    def together(self, span: CycleSpan, states: FloatArray, torques: FloatArray) -> Runs:
+        """Follow the motions from some states over the same mesh cycles.
 
         Parameters
         ----------
-        start, cycles, recorded : as of ``CycleSpan``
-        state : (2m,) state at the start
-        torques : (2m,) constant accelerations by the torques
+        span : the mesh cycles
+        states : (runs, 2m) states at the start
+        torques : (runs, 2m) constant accelerations by the torques
         """
-        # The loads of a run start from 0, so that no run depends on the run before.
-        mesh = self.mesh._replace(contacts=np.zeros(self.tables.ahead.size, CONTACT))
-        body = self.body._replace(torque=np.ascontiguousarray(torques[len(self.system.coordinates) :]))
-        span = CycleSpan(start, cycles, recorded)
-        result: Run = run_cycles(span, self.tables, body, self.ripples, state, mesh, np.zeros(1, WORK))
+        # The loads of a run start from 0, so that no run depends on another one.
+        contacts = np.zeros((len(states), self.tables.ahead.size), CONTACT)
+        by_torque = np.ascontiguousarray(torques[:, len(self.system.coordinates) :])
+        work = np.zeros(len(states), WORK)
+        start = self.ripples, np.ascontiguousarray(states), by_torque
+        result: Runs = run_cycles(span, self.tables, self.body, *start, self.mesh, contacts, work)
         return result
 
 
@@ -146,7 +152,6 @@ def body_of(system: LTVSystem) -> Body:
     return Body(
         constant=constant,
         states=states,
-        torque=np.zeros(m),
         deflection=np.ascontiguousarray(system.deflection),
         per_normal=per_normal,
         per_friction_force=per_friction_force,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property, lru_cache, partial
+from functools import cache, cached_property, lru_cache, partial
 
 import numpy as np
 
@@ -288,7 +288,10 @@ def _merged_steps(
 
 def padded(system: LTVSystem, extra: FloatArray) -> FloatArray:
     """Return forcings (n, columns) with columns of zeros at the end, as ``Steps.maps`` has."""
-    return np.pad(extra, ((0, 0), (0, -(system.size + 1 + extra.shape[1]) % _TOGETHER)))
+    n, columns = extra.shape
+    wide = np.zeros((n, columns + -(system.size + 1 + columns) % _TOGETHER))
+    wide[:, :columns] = extra
+    return wide
 
 
 def _steps(
@@ -383,14 +386,15 @@ def without_mesh(
         by_p=np.concatenate([of_length**2 * (gauss.a @ gauss.a), of_length * gauss.a], axis=1),
         reach=np.multiply.outer(h, gauss.c),
     )
-    add_free_steps(h, _inverse_of_stages(system, h, gauss.a), equations, free)
+    add_free_steps(h, _inverse_of_stages(system, h, stages), equations, free)
     return free
 
 
-def _inverse_of_stages(system: LTVSystem, h: FloatArray, a: FloatArray) -> FloatArray:
+def _inverse_of_stages(system: LTVSystem, h: FloatArray, s: int) -> FloatArray:
     """Inverse of the equations W - h^2 (a a) K W - h a C W = f for the accelerations W at the stages.
 
-    With the eigenvalues of a = V diag(lambda) V^-1 the equations fall apart into those of one stage,
+    With the eigenvalues of a = V diag(lambda) V^-1, of the Gauss method with s stages, the equations fall
+    apart into those of one stage,
 
         (1 - h^2 lambda^2 K - h lambda C) W = f.
 
@@ -400,10 +404,9 @@ def _inverse_of_stages(system: LTVSystem, h: FloatArray, a: FloatArray) -> Float
     Source: J. C. Butcher, BIT 16 (1976) 237-240.
     """
     m = system.size // 2
-    s = len(a)
     stiffness, damping = (np.asarray(part) for part in np.split(system.constant[m:], 2, axis=1))
     single = not any(np.count_nonzero(part - np.diag(part.diagonal())) for part in (stiffness, damping))
-    eigenvalues, to_stages = _stages_apart(a)
+    eigenvalues, to_stages = _stages_apart(s)
     z: ComplexArray = np.multiply.outer(eigenvalues, h)[..., None]
     change: ComplexArray
     # The inverse less one, 1 / (1 - moved) - 1: exactly 0 where nothing acts on a coordinate, as on the
@@ -422,12 +425,15 @@ def _inverse_of_stages(system: LTVSystem, h: FloatArray, a: FloatArray) -> Float
     return np.asarray(inverse + unit, dtype=np.float64, order="C")
 
 
-def _stages_apart(a: FloatArray) -> tuple[ComplexArray, ComplexArray]:
-    """Eigenvalues of a (s, s) with positive or no imaginary part, (n,), and a matrix (s s, n).
+@cache
+def _stages_apart(stages: int) -> tuple[ComplexArray, ComplexArray]:
+    """Eigenvalues of a (s, s) of the Gauss method with positive or no imaginary part, (n,), and a matrix
+    (s s, n).
 
     f(a), row by row, is the real part of the matrix times f(eigenvalues), where f is real on the real axis.
     A pair of conjugate eigenvalues has one column.
     """
+    a = gauss_tableau(stages).a
     eigenvalues, vectors = np.linalg.eig(a)
     of_stages = vectors[:, None, :] * np.linalg.inv(vectors).T
     pairs = np.where(eigenvalues.imag > 0.0, 2.0, 1.0)

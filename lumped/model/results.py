@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -52,6 +52,35 @@ VARIABLES: dict[str, tuple[tuple[str, ...], str, str]] = {
     "bearing_force_y_p": (("time",), "N", "pinion bearing force on the pinion, off the line of action"),
     "bearing_force_y_g": (("time",), "N", "gear bearing force on the gear, off the line of action"),
 }
+
+
+class MotionValues(Mapping[str, FloatArray]):
+    """Variables of a motion by name: some are known, all others are computed when one of them is first read.
+
+    Parameters
+    ----------
+    known : variables by name
+    others : returns the other variables by name; a known variable replaces one of the same name
+    """
+
+    def __init__(
+        self, known: Mapping[str, FloatArray], others: Callable[[], Mapping[str, FloatArray]]
+    ) -> None:
+        self._known = known
+        self._others = others
+
+    @cached_property
+    def _all(self) -> dict[str, FloatArray]:
+        return dict(self._others()) | dict(self._known)
+
+    def __getitem__(self, name: str) -> FloatArray:
+        return self._known[name] if name in self._known else self._all[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._all)
+
+    def __len__(self) -> int:
+        return len(self._all)
 
 
 @dataclass(frozen=True, eq=False)
@@ -188,7 +217,7 @@ def response(
     normal_load: FloatArray | None = None,
     pairs: PairState | None = None,
 ) -> dict[str, FloatArray]:
-    """Return the variables of ``VARIABLES`` at states by name, without labels. A loss of sliding is here.
+    """Return the variables of ``VARIABLES`` at states by name, without labels.
 
     Parameters
     ----------
@@ -196,14 +225,37 @@ def response(
     normal_load : (pairs, k) load of each pair [N]; by default the load of the linear form
     pairs : coefficients of the pairs; by default those of like teeth
     """
-    g = system.pair.geometry
-    s = system.structure
-    z, rates = system.gear_motion(states)
-    dte = z @ s.deflection
-    dte_dot = rates @ s.deflection
+    values = gear_values(system, states)
     pairs = system.cycle.sample(time) if pairs is None else pairs
-    if (normal := normal_load) is None:
-        normal = pairs.load(dte, dte_dot)
+    normal = pairs.load(values["dte"], values["dte_dot"]) if normal_load is None else normal_load
+    return values | pair_values(system, states, normal, pairs)
+
+
+def gear_values(system: LTVSystem, states: FloatArray) -> dict[str, FloatArray]:
+    """Return the variables of both gears and their bearings at states (k, n) of the "full" system."""
+    z, rates = system.gear_motion(states)
+    values: dict[str, FloatArray] = {name: z[:, j] for j, name in enumerate(COORDINATES)}
+    values |= {f"{name}_dot": rates[:, j] for j, name in enumerate(COORDINATES)}
+    values |= {
+        f"bearing_force_{name}": force for name, force in system.supports.forces_by_gear(states).items()
+    }
+    deflection = system.structure.deflection
+    return values | {"dte": z @ deflection, "dte_dot": rates @ deflection}
+
+
+def pair_values(
+    system: LTVSystem, states: FloatArray, normal: FloatArray, pairs: PairState
+) -> dict[str, FloatArray]:
+    """Return the variables of the tooth pairs at states, by name. A loss of sliding is here.
+
+    Parameters
+    ----------
+    states : (k, n) of the "full" system
+    normal : (pairs, k) load of each pair [N]
+    pairs : coefficients of the pairs
+    """
+    g = system.pair.geometry
+    _, rates = system.gear_motion(states)
     friction = pairs.friction * normal
     arm_g = g.L_XY - pairs.position
     sliding = (
@@ -211,14 +263,7 @@ def response(
         - (g.omega_gear + rates[:, THETA_G]) * arm_g
         - (rates[:, Y_P] - rates[:, Y_G])
     )
-    values: dict[str, FloatArray] = {name: z[:, j] for j, name in enumerate(COORDINATES)}
-    values |= {f"{name}_dot": rates[:, j] for j, name in enumerate(COORDINATES)}
-    values |= {
-        f"bearing_force_{name}": force for name, force in system.supports.forces_by_gear(states).items()
-    }
-    values |= {
-        "dte": dte,
-        "dte_dot": dte_dot,
+    return {
         "mesh_stiffness": pairs.stiffness.sum(0),
         "position": pairs.position,
         "contact": pairs.contact.astype(np.float64),
@@ -229,7 +274,6 @@ def response(
         "friction_power": np.where(pairs.contact, -friction * sliding, 0.0),
         "friction_power_nominal": -friction * (g.omega_pinion * pairs.position - g.omega_gear * arm_g),
     }
-    return values
 
 
 def corner_force(values: Mapping[str, FloatArray], pairs: PairState) -> FloatArray:

@@ -20,7 +20,14 @@ from lumped.model.linear_or_unilateral import ContactArgument
 from lumped.model.mesh_cycle import PairState
 from lumped.model.periodic_system import LTVSystem
 from lumped.model.propagation import fastest_frequency
-from lumped.model.results import PlainMotion, labelled, peaks_to_peaks, response
+from lumped.model.results import (
+    MotionValues,
+    PlainMotion,
+    gear_values,
+    labelled,
+    pair_values,
+    peaks_to_peaks,
+)
 from lumped.model.steady import SWINGING
 from lumped.model.swing import swing
 from lumped.quasi_static.contacts import contact_of
@@ -205,10 +212,15 @@ def plain_motion(
     """
     system = motion.system
     places = motion.shown_places
-    pairs = motion.pairs.of_places(places)
-    values = response(system, motion.time, motion.states, motion.load[places], pairs)
+    load = motion.load[places]
+    known = gear_values(system, motion.states) | {"normal_load": load}
     if motion.stiffness is not None:
-        values["mesh_stiffness"] = motion.stiffness
+        known["mesh_stiffness"] = motion.stiffness
+
+    def of_pairs() -> dict[str, FloatArray]:
+        return pair_values(system, motion.states, load, motion.pairs.of_places(places))
+
+    values = MotionValues(known, of_pairs)
     attributes = _attributes(motion) | (_of_period(motion, values) if periodic else {})
 
     def make_dataset() -> xr.Dataset:
@@ -253,7 +265,7 @@ def _attributes(motion: RevolutionMotion) -> dict[str, Any]:
     return attributes
 
 
-def _of_period(motion: RevolutionMotion, values: dict[str, FloatArray]) -> dict[str, float]:
+def _of_period(motion: RevolutionMotion, values: Mapping[str, FloatArray]) -> dict[str, float]:
     """Errors and ranges of a motion that closes."""
     attributes = {
         "closure": motion.closure,

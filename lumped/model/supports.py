@@ -145,14 +145,14 @@ class Springs(Supports):
         m = {"full": 6, "elastic": 5, "mesh": 3}[form]
         if form == "full":
             names: tuple[str, ...] = COORDINATES
-            reduction = np.eye(6)
+            reduction = lift = np.eye(6)
             deflection = s.deflection
         else:
             names = ("q", "x_p", "x_g", "y_p", "y_g")[:m]
             reduction = self.relative[:m]
             deflection = np.array([1.0, 1.0, -1.0, 0.0, 0.0])[:m]
-        # Bearings act on translations. Every translation of the form is a coordinate.
-        lift = np.asarray(np.linalg.pinv(reduction), dtype=np.float64)
+            # Bearings act on translations. Every translation of the form is a coordinate.
+            lift = np.asarray(np.linalg.pinv(reduction), dtype=np.float64)
         return Coordinates(
             names=names,
             gears=lift,

@@ -22,7 +22,7 @@ from lumped.mesh.motion import RIPPLE
 from lumped.mesh.records import FLANKS, QUICK, ContactLaw, Records
 from lumped.mesh.statics import flank_end_gaps
 from lumped.mesh.tables import LAWS, TOOTH, TURNING, MeshTables
-from lumped.mesh.unloaded import RELIEF, couplings, reliefs_at
+from lumped.mesh.unloaded import RELIEF, couplings, relief_slopes, reliefs_at
 from lumped.path_of_contact import friction_path_function
 from lumped.quasi_static.contacts import contact_of
 from lumped.quasi_static.elements import MeshElements, at_rest
@@ -349,9 +349,11 @@ def _gap_slopes(laws: ToothLaws, position: FloatArray, differences: _Differences
     Nothing reads the slopes of other laws than the gap: these slopes are 0.
     """
     slopes = np.zeros((1, *position.shape), LAWS)
-    if laws.elements is None and laws.mesh.unloaded.reliefs.size == 0:
-        return slopes
-    slopes["gap"] = differences.slope(laws.gap_of_like_teeth(differences.positions(position)))
+    if laws.elements is not None:
+        slopes["gap"] = differences.slope(laws.elements.error(differences.positions(position)))
+    elif (reliefs := laws.mesh.unloaded.reliefs).size:
+        ends = laws.geometry.L_XA, laws.geometry.L_XD
+        slopes["gap"] = relief_slopes(reliefs, *ends, position, differences.offsets, differences.weights)
     return slopes
 
 
@@ -412,7 +414,10 @@ def mesh_tables(
         slopes["mu"] = 0.0
     no_shapes = np.zeros((*position.shape, 2), TOOTH)  # the numbers of like teeth are 0: no shape acts
     turning = laws.turning()
-    angle = 2.0 * np.pi / turning["cycles"] * phase[..., None]
+    acts = turning["amplitude"] != 0.0
+    angle = 2.0 * np.pi / turning["cycles"][acts] * phase[..., None]
+    turned = np.zeros((*phase.shape, turning.size, 2))
+    turned[:, :, acts] = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
     pinion, gear = laws.teeth
     return MeshTables(
         edges=steps.edges,
@@ -431,7 +436,7 @@ def mesh_tables(
         pinion=pinion,
         gear=gear,
         turning=turning,
-        turned=np.stack([np.cos(angle), np.sin(angle)], axis=-1),
+        turned=turned,
         cotangent=1.0 / np.tan(g.operating_pressure_angle),
         first=np.array(first_teeth(laws.pair), dtype=np.int64),
         period=period_of(laws.pair),

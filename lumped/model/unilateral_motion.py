@@ -22,7 +22,7 @@ from typing import Self
 import numpy as np
 
 from lumped.errors import NumericalError, UnsettledError
-from lumped.mesh.motion import Run
+from lumped.mesh.motion import CycleSpan, Run
 from lumped.model.equations import COORDINATES
 from lumped.model.mesh_cycle import MeshCycle
 from lumped.model.momentary_load import (
@@ -203,15 +203,18 @@ class Shooting:
         cycles : mesh cycles; 0: as many as the motion has
         recorded : number of the last mesh cycles that are recorded, which takes half as long again
         """
-        system = self.system
-        driving, brake = self.torques(unknowns)
-        torques = driving * system.torque_pinion + brake * system.torque_gear
-        state = self.from_relative @ unknowns[:-1]
+        state, torques = self._start(unknowns)
         if rate != 0.0:
-            common = system.supports.common
+            common = self.system.supports.common
             state[common.size :] += rate * common
         count = cycles or self.cycles
         return state, runs.run(0, count, recorded, state, torques)
+
+    def _start(self, unknowns: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """State (2m,) at the start that belongs to unknowns, and the accelerations (2m,) by the torques."""
+        driving, brake = self.torques(unknowns)
+        torques = driving * self.system.torque_pinion + brake * self.system.torque_gear
+        return self.from_relative @ unknowns[:-1], torques
 
     def mismatch(self, unknowns: FloatArray, runs: MomentaryRuns) -> tuple[FloatArray, Run]:
         """Change of state and weighted rate of the common rotation over the cycles; and the run."""
@@ -251,7 +254,10 @@ class Shooting:
         """Derivatives by some of the unknowns; ``unchanged`` is the mismatch of runs with long steps."""
         sizes, of_mismatch = self.scales(unknowns)
         changes = np.diag(_DIFFERENCE * sizes)[columns]
-        changed = np.array([self.mismatch(unknowns + change, self.coarse)[0] for change in changes])
+        starts = [self._start(unknowns + change) for change in changes]
+        states, torques = (np.array(part) for part in zip(*starts, strict=True))
+        ends = self.coarse.together(CycleSpan(0, self.cycles, 0), states, torques).end
+        changed = np.array([self.to_mismatch @ change for change in ends - states])
         return np.asarray(((changed - unchanged) / _DIFFERENCE / of_mismatch).T, dtype=np.float64)
 
     def spectral_radius(self, unknowns: FloatArray, unchanged: FloatArray) -> float:

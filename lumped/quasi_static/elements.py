@@ -148,17 +148,16 @@ def positive_intervals(
     inside = 1e-12 * pitch
     marks = np.unique(kinks[(kinks > low + inside) & (kinks < high - inside)])
     smooth = [(a, b) for a, b in itertools.pairwise([low, *marks, high]) if b - a > 4 * inside]
-    counts = [max(3, int(_SAMPLES * (end - start) / (high - low))) for start, end in smooth]
-    parts = [
-        np.linspace(start + inside, end - inside, count)
-        for (start, end), count in zip(smooth, counts, strict=True)
-    ]
-    xi = np.concatenate(parts)
+    starts, stops = np.array(smooth).T
+    counts = np.maximum(3, (_SAMPLES * (stops - starts) / (high - low)).astype(np.int64))
+    first = np.concatenate([[0], np.cumsum(counts)])
+    number = np.arange(first[-1]) - np.repeat(first[:-1], counts)
+    steps = ((stops - inside) - (starts + inside)) / (counts - 1)
+    xi = number * np.repeat(steps, counts) + np.repeat(starts + inside, counts)
+    xi[first[1:] - 1] = stops - inside
     positive = function(xi) > 0.0
-    first = np.cumsum([0, *counts])
     changes = np.setdiff1d(np.flatnonzero(np.diff(positive)), first[1:] - 1)
     roots = roots_in_brackets(function, xi[changes], xi[changes + 1], xtol=1e-16)
-    starts, stops = np.array(smooth).T
     ends = np.sort(np.concatenate([starts[positive[first[:-1]]], roots, stops[positive[first[1:] - 1]]]))
     meet = 2 * np.flatnonzero(np.diff(ends)[1::2] <= 4 * inside)  # intervals that meet at a mark are one
     return np.delete(ends, [*(meet + 1), *(meet + 2)]).reshape(-1, 2)

@@ -21,7 +21,14 @@ import numpy as np
 from lumped.errors import BeyondFlanksError, NumericalError, refuse
 from lumped.mesh.damper import FULL_DAMPING, damping_law
 from lumped.mesh.records import CONTACT, EXACT, FLANKS, ContactLaw, Records
-from lumped.mesh.statics import Phases, middle_contacts, static_approaches, tips_minus_edges, workspace
+from lumped.mesh.statics import (
+    Phases,
+    Workspace,
+    middle_contacts,
+    static_approaches,
+    tips_minus_edges,
+    workspace,
+)
 from lumped.mesh.unloaded import RELIEF, PairLaws, unloaded_phases
 from lumped.path_function import FIT_POINTS, PathFunction
 from lumped.path_of_contact import friction_path_function, pair_stiffness
@@ -271,13 +278,14 @@ class StaticMesh:
         if self._fitted is not None:
             start = self._fitted.breaks[0]
             return self._fitted(start + np.mod(xi - start, self.geometry.base_pitch))
-        return self._approach(self.phases(xi))
+        phases = self.phases(xi)
+        return self._approach(phases, workspace(phases))
 
-    def _approach(self, phases: Phases) -> FloatArray:
+    def _approach(self, phases: Phases, space: Workspace) -> FloatArray:
         """Static approach delta (n,) [m] by iteration."""
         force = np.full(len(phases.position), self.force)
         no_loads = np.empty((0, self.shifts.size))
-        approach = static_approaches(phases, force, self.flanks, self.law, no_loads, workspace(phases))
+        approach = static_approaches(phases, force, self.flanks, self.law, no_loads, space)
         if not np.isfinite(approach).all():
             self.refuse_soft_bearings()
             raise NumericalError("At a position no tooth pair carries the load: check stiffness and relief.")
@@ -326,8 +334,9 @@ class StaticMesh:
         """Return the pair at xi (n,) [m] in static equilibrium."""
         contact = np.zeros(np.size(xi), CONTACT)
         phases = self.phases(xi)
-        approach = self._approach(phases) if self._fitted is None else self.approach(xi)
-        middle_contacts(approach, phases, self.flanks, self.law, contact, workspace(phases))
+        space = workspace(phases)
+        approach = self._approach(phases, space) if self._fitted is None else self.approach(xi)
+        middle_contacts(approach, phases, self.flanks, self.law, contact, space)
         return StaticPair(approach, contact)
 
     def pairs_in_contact(self, xi: FloatArray) -> StaticPair:

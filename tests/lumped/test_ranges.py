@@ -1,12 +1,13 @@
 """Is a quantity outside a stated range just beyond its limit, and inside just before it and at it?"""
 
 import math
+import warnings
 
 import pytest
 
-from lumped.errors import ParameterError
+from lumped.errors import LawRangeWarning, ParameterError
 from lumped.friction import LAWS
-from lumped.ranges import checked, range_violations
+from lumped.ranges import checked, range_violations, warnings_are_heard
 from lumped.stiffness import foundation, iso6336
 from tests.guards.fits import RANGES
 
@@ -35,3 +36,28 @@ def test_what_no_law_can_take():
     for value, allow_zero in ((0.0, False), (-least, True), (math.inf, True), (math.nan, True)):
         with pytest.raises(ParameterError, match="m/s"):
             checked("v", [1.0, value], "m/s", allow_zero=allow_zero)
+
+
+@pytest.mark.parametrize("ignored", [LawRangeWarning, UserWarning, Warning])
+def test_a_warning_that_everybody_ignores_is_not_heard(ignored):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ignored)
+        assert not warnings_are_heard()
+
+
+@pytest.mark.parametrize(
+    "choose",
+    [
+        lambda: None,
+        lambda: warnings.simplefilter("error", LawRangeWarning),
+        lambda: warnings.simplefilter("ignore", DeprecationWarning),
+        lambda: warnings.filterwarnings("ignore", "Benedict", LawRangeWarning),
+        lambda: warnings.filterwarnings("ignore", category=LawRangeWarning, module="theirs"),
+    ],
+)
+def test_a_warning_that_somebody_may_want_is_heard(choose):
+    """A filter by text or module ignores some warnings; the first filter for a category decides."""
+    with warnings.catch_warnings():
+        warnings.resetwarnings()
+        choose()
+        assert warnings_are_heard()

@@ -10,9 +10,9 @@ ROOT = Path(__file__).parents[2]
 PACKAGES = ("lumped", "multibody", "floquet", "validation")
 #: Files that every folder of a package may need; everything else has a folder.
 LOOSE = {
-    "lumped": {"arguments", "cache", "calls", "compiler", "compiler_flags", "errors", "gauss_legendre",
-     "kernel_stamps", "labelling", "linked_code", "outcomes", "path_function", "path_values", "public_names",
-     "quick_compilation", "ranges", "root_in_bracket", "typing"},
+    "lumped": {"arguments", "bracket_steps", "cache", "calls", "compiler", "compiler_flags",
+     "errors", "gauss_legendre", "kernel_stamps", "labelling", "linked_code", "outcomes", "path_function",
+     "path_values", "public_names", "quick_compilation", "ranges", "root_in_bracket", "typing"},
     "floquet": {"proven"},
     "validation": {"stop_signals", "cli", "pytest_plugin"},
 }  # fmt: skip

@@ -47,6 +47,8 @@ _BETTER = 0.9
 _DAMPERS_STAY = "dampers stay"
 #: Alternatives are named up to this many times the misfit.
 _WITHIN = 2.0
+#: Single explanations that are named whatever they leave.
+_ALONE = 3
 
 
 @dataclass(frozen=True)
@@ -96,6 +98,7 @@ class Ladder:
     start : misfit before the first step
     steps : steps, in the order in which they were taken
     motion : our motion after the last step
+    alone : the three best single explanations, each in place of all steps, best first
     runs : number of motions that were computed
     complete : whether the search ended by itself, not by its budget
     """
@@ -105,6 +108,14 @@ class Ladder:
     motion: MotionCurves
     runs: int
     complete: bool
+    alone: tuple[Alternative, ...] = ()
+
+    @property
+    def others_alone(self) -> tuple[Alternative, ...]:
+        """The single explanations of ``alone`` that neither a step nor an alternative says."""
+        said = {step.sentence for step in self.steps}
+        said |= {other.sentence for step in self.steps for other in step.alternatives}
+        return tuple(one for one in self.alone if one.sentence not in said)
 
 
 def climb(
@@ -153,7 +164,8 @@ def climb(
         finest = search.trial(best.steps)  # of our motion with all its samples
         best = best if finest is None else Path(best.steps, finest)
     steps = tuple(_explanations(search, best, floor))
-    return Ladder(problem.misfit.value, steps, best.trial.motion, search.runs, complete=complete)
+    alone = tuple(_alone(search, best, limit, floor)) if steps else ()
+    return Ladder(problem.misfit.value, steps, best.trial.motion, search.runs, complete=complete, alone=alone)
 
 
 def _best_path(search: Search, limit: float, floor: float) -> Path:
@@ -341,3 +353,21 @@ def _alternatives(search: Search, best: Path, step: Step, floor: float) -> Itera
         if path.trial.value <= most and other.cause.name not in names:
             names.add(other.cause.name)
             yield Alternative(other.cause.name, other.label, path.trial.value, other.sentence)
+
+
+def _alone(search: Search, best: Path, limit: float, floor: float) -> Iterator[Alternative]:
+    """The best single explanations, one for each name, by the misfit with the price of each.
+
+    A step of another mesh frequency stays, because each of them needs it.
+    """
+    kept = {step.key for step in best.steps if search.of_frequency(step.cause)}
+    if len(kept) == len(best.steps):
+        return
+    names: set[str] = set()
+    for keys, path in sorted(search.archive.items(), key=lambda item: item[1].score(floor, limit)):
+        if len(keys) != len(kept) + 1 or not kept <= keys or len(names) == _ALONE:
+            continue
+        step = next(one for one in path.steps if one.key not in kept)
+        if step.cause.name not in names and step.changes:
+            names.add(step.cause.name)
+            yield Alternative(step.cause.name, step.label, path.trial.value, step.sentence)

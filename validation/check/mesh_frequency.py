@@ -52,6 +52,9 @@ _SMALL_CHANGE = 0.05
 _SMALLER = 0.1
 #: The first orders at the frequency of the pair carry little below this share of the variation.
 _LITTLE = 0.5
+#: A known factor is the one found where it is this near to it, and changes at most this many times as much.
+_NEAR_KNOWN = 2e-3
+_AS_WELL = 1.5
 #: Another mesh frequency of a model is searched within this share.
 _WIDE = 0.2
 #: Another speed of a record is searched within this share of the stated speed.
@@ -146,15 +149,29 @@ def mesh_frequency(curves: Curves, pair: GearPair, *, mistakes: bool = True) -> 
         if (more or repeats) and not _is_multiple(trial, best):
             best, at_pair = Frequency(trial, cause), most / _TIMES
     if not best.cause and mistakes and at_pair < _LITTLE:
-        return _elsewhere(carried, best)
+        return _elsewhere(carried, best, circular_over_base(pair))
     return best
 
 
-def _elsewhere(carried: _Carried, best: Frequency) -> Frequency:
-    """The mesh frequency within a fifth of that of the pair at which the curves repeat, else ``best``."""
+def circular_over_base(pair: GearPair) -> tuple[float, float]:
+    """Return cos(alpha) of operation and of the rack, factors on a mesh frequency by the circular pitch."""
+    return math.cos(pair.geometry.operating_pressure_angle), math.cos(pair.basic_rack.pressure_angle)
+
+
+def _elsewhere(carried: _Carried, best: Frequency, known: Sequence[float]) -> Frequency:
+    """The mesh frequency within a fifth of that of the pair at which the curves repeat, else ``best``.
+
+    A known factor that repeats about as well as the best one is taken.
+    """
     length = min(_SHORT, carried.reach)
     rough, _ = carried.strongest(1.0, _WIDE, length)
     factor = carried.refined(rough)
+    if factor == rough:  # few cycles
+        factor = carried.best_repeat(rough)
+    for one in (*known, *(1.0 / cosine for cosine in known)):
+        about_as_well = carried.change(one) < _AS_WELL * carried.change(factor)
+        if abs(factor / one - 1.0) < _NEAR_KNOWN and about_as_well:
+            factor = one
     if carried(factor, carried.reach) > _MOST and carried.repeats(factor, best.factor):
         return Frequency(factor, "the speed or the sampling rate is another one")
     return best
@@ -246,9 +263,14 @@ class _Carried:
         at_factor = self.change(factor)
         if at_factor < _REPEATS:
             return factor
+        best = self.best_repeat(factor)
+        return best if self.change(best) < _REPEATS_BETTER * at_factor else factor
+
+    def best_repeat(self, factor: float) -> float:
+        """Return the factor within 0.5 % of another one at which the curves repeat best."""
         ends = (factor * (1.0 - SAME), factor * (1.0 + SAME))
         fine = minimize_scalar(self.change, bounds=ends, method="bounded", options={"xatol": 1e-6 * factor})
-        return float(fine.x) if float(fine.fun) < _REPEATS_BETTER * at_factor else factor
+        return float(fine.x)
 
     def change(self, factor: float) -> float:
         """Return the mean square of the change over one mesh cycle, over the variance.

@@ -144,6 +144,8 @@ def _show(result: Check) -> None:
         for number, step in enumerate(result.explanations, start=1):
             steps.append((str(number), step.sentence, percent(step.misfit)))
             steps += [("", f"or: {other.sentence}", percent(other.misfit)) for other in step.alternatives]
+        alone = result.ladder.others_alone
+        steps += [("", f"alone: {other.sentence}", percent(other.misfit)) for other in alone]
         show("", "step | compatible with | >misfit then", steps)
 
 

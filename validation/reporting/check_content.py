@@ -313,9 +313,11 @@ def ladder_content(problem: Problem, ladder: Ladder, limit: float) -> Content:
     for number, step in enumerate(ladder.steps, start=1):
         items.append(_StepRow(str(number), step.sentence, step.factor, step.misfit))
         items += [_StepRow("", f"or: {a.sentence}", a.factor, a.misfit) for a in step.alternatives]
+    items += [_StepRow("", f"alone: {a.sentence}", a.factor, a.misfit) for a in ladder.others_alone]
     table = table_of(
         "explanations",
-        "Steps of the search, and what the curves do not tell apart from each step.",
+        "Steps of the search, what the curves do not tell apart from each step, and the best single "
+        "explanations alone, in place of all steps.",
         items,
         (
             Column[_StepRow]("step", "step", lambda item: item.step),

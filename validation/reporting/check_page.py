@@ -98,6 +98,10 @@ def document(check: Check, parts: tuple[CheckPart, ...]) -> dict[str, Any]:
             }
             for step in check.explanations
         ],
+        "alone": [
+            {"name": a.name, "factor": a.factor, "misfit": a.misfit, "sentence": a.sentence}
+            for a in (() if check.ladder is None else check.ladder.alone)
+        ],
         "chapters": {part.anchor: chapter_data(part.title, part.content) for part in parts},
         "parameters": check.pair.to_mapping(),
     }

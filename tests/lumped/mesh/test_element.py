@@ -73,6 +73,22 @@ def test_a_pair_moves_its_neighbour_as_this_one_moves_it():
     assert matrix.sum(axis=1) == pytest.approx(mesh.contacts["tangent"], rel=1e-6)
 
 
+def test_newton_steps_start_on_the_tangent():
+    """The tangent errs with the square of a change of the approach, so one Newton step errs with the fourth
+    power: half the change, a sixteenth of the error. From the former load it is a quarter.
+    """
+    approach = 1.2e-5
+    inside = [0.0095, 0.0150, 0.0210]
+    errors = []
+    for change in (4e-7, 2e-7):
+        mesh = coupled(inside)
+        mesh.loads(approach)
+        mesh.law = mesh.law._replace(converged=1e9)  # one step
+        one_step = mesh.loads(approach + change)
+        errors.append(np.abs(one_step - coupled(inside).loads(approach + change)).max())
+    assert errors[0] / errors[1] == pytest.approx(16.0, rel=0.1)
+
+
 @pytest.mark.parametrize("beyond", [2e-5, 3e-4, 9e-4])
 @pytest.mark.parametrize("radii", [(0.040, 0.075), (0.075, 0.040)])
 def test_corner_gap_is_the_distance_of_two_involutes(beyond, radii):

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from lumped.mesh.motion import CycleSpan
 from lumped.model.momentary_load import MomentaryRuns, momentary_tables
 from lumped.model.periodic_system import LTVSystem
 from lumped.model.solution import static_deflection
@@ -50,3 +51,23 @@ def test_cycles_differ_with_teeth_that_differ_and_with_a_ripple(change):
     assert runs_of(pair.healthy).tables.alike
     shared = MomentaryRuns(pair, runs.system, runs.tables._replace(alike=True))
     assert not np.array_equal(run(runs).end, run(shared).end)
+
+
+@pytest.mark.parametrize("change", [{}, {"pinion.deviations": {"tolerance_class": 7}}])
+def test_runs_together_are_the_same_bits_as_runs_one_by_one(unlike, change):
+    """Starts and torques differ, and in one run contact is lost at once."""
+    pair = unlike.healthy.with_(change)
+    runs = runs_of(pair)
+    at_rest = static_deflection(runs.system)
+    torque = pair.operating.pinion_torque * runs.system.torque_pinion
+    states = np.array([at_rest, 0.9 * at_rest, -at_rest])
+    torques = np.array([torque, 1.1 * torque, torque])
+    span = CycleSpan(2, 3, 2)
+    together = runs.together(span, states, torques)
+    for number, (state, own_torque) in enumerate(zip(states, torques, strict=True)):
+        alone = runs_of(pair).run(*span, state, own_torque)
+        np.testing.assert_array_equal(together.states[number], alone.states)
+        np.testing.assert_array_equal(together.loads[number], alone.loads)
+        np.testing.assert_array_equal(together.end[number], alone.end)
+        assert together.work[number] == alone.work[0]
+    assert not np.array_equal(together.end[0], together.end[1])

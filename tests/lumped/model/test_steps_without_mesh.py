@@ -65,7 +65,9 @@ def test_a_step_is_that_of_collocation_in_all_coordinates(unlike, form, stages):
         at_stages = state[m:] + h * gauss.a @ rates[:, m:]
         assert h * np.abs(between.reshape(stages, m) - at_stages).max() < TOLERANCE * size
         np.testing.assert_array_equal(free.reach[number], h * gauss.c)
-        np.testing.assert_array_equal(free.by_p[number], np.vstack([h**2 * (gauss.a @ gauss.a), h * gauss.a]))
+        np.testing.assert_array_equal(
+            free.by_p[number], np.vstack([h * h * (gauss.a @ gauss.a), h * gauss.a])
+        )
 
 
 @pytest.mark.parametrize("stages", [3, 4])

@@ -64,6 +64,7 @@ def pairs_of_cases():
                 "gear.tip_relief": {"amount": "9 um", "start_roll_angle": "24 deg"},
             }
         ),
+        "parting": unlike.with_({"operating.pinion_speed": "8000 rpm", "mesh.damping_ratio": 0.02}),
         "unlike addenda": unlike.with_({"pinion.addendum": None, "gear.tip_alteration": "-0.4 mm"}),
         "contact lost": lumped.load_gear_pair("nasa_art_25_31").healthy,
         "shifted": unlike_pair("contact_ratio_1_1_large_shifts").with_(COULOMB),

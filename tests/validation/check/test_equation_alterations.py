@@ -29,6 +29,8 @@ def arms_of(pair, name):
     return {
         "from A": (lambda xi: xi - g.L_XA, lambda xi: g.L_XY - (xi - g.L_XA)),
         "of the other gear": (lambda xi: g.L_XY - xi, lambda xi: xi),
+        "of the pinion": (lambda xi: xi, lambda xi: xi),
+        "of the gear": (lambda xi: g.L_XY - xi, lambda xi: g.L_XY - xi),
         "at the pitch point": (lambda xi: 0.0 * xi + g.L_XP, lambda xi: 0.0 * xi + g.L_XY - g.L_XP),
         "from A on the pinion": (lambda xi: xi - g.L_XA, lambda xi: g.L_XY - xi),
         "from both ends": (lambda xi: xi - g.L_XA, lambda xi: g.L_XD - xi),
@@ -57,6 +59,8 @@ def arms_of(pair, name):
         "from A",
         "from A on the pinion",
         "from both ends",
+        "of the pinion",
+        "of the gear",
         "from the pitch point",
         "of the other gear",
         "at the pitch point",
@@ -84,8 +88,10 @@ def test_moments_of_friction_balance_the_torques(pair, name):
     # Forces jump with a pair that comes or goes: a sum over 512 samples errs by up to a jump over 512.
     assert pinion == pytest.approx(pair.operating.pinion_torque, rel=1.5e-3)
     assert gear == pytest.approx(motion.attrs["brake_torque"], rel=1.5e-3)
-    if name == "line of the rack":
-        return  # only the arm on the gear is another one
+    if name in ("line of the rack", "of the pinion"):  # only the arm on the gear is another one
+        true_gear = (g.base_radius_gear * load + (g.L_XY - position) * friction).sum(axis=0).mean()
+        assert abs(true_gear - motion.attrs["brake_torque"]) > 2.0 * abs(gear - motion.attrs["brake_torque"])
+        return
     true_pinion = (g.base_radius_pinion * load + position * friction).sum(axis=0).mean()
     torque = pair.operating.pinion_torque
     assert abs(true_pinion - torque) > 2.0 * abs(pinion - torque)  # the true arms do not balance
@@ -293,6 +299,13 @@ def test_dampers_in_proportion_to_stiffness(pair):
     assert time == pytest.approx(time[0], rel=1e-5)
     bearings = altered_equations(pair, Physics(proportional_bearings=True))
     assert bearings.damping[2:] == pytest.approx(time[0] * bearings.stiffness[2:], rel=1e-5)
+    of_frequency = altered_elements(pair, Physics(damper="proportional at the mesh frequency"))
+    of_mesh = 2.0 * pair.mesh.damping_ratio / (2.0 * np.pi / pair.geometry.mesh_period)
+    places = np.linspace(pair.geometry.L_XA, pair.geometry.L_XD, 33)[1:-1]
+    assert of_frequency.damping(places) == pytest.approx(of_mesh * of_frequency.stiffness(places), rel=1e-6)
+    both = Physics(damper="proportional at the mesh frequency", proportional_bearings=True)
+    dampers = altered_equations(pair, both)
+    assert dampers.damping == pytest.approx(of_mesh * dampers.stiffness)
 
 
 def test_a_constant_damper_for_each_pair(pair):

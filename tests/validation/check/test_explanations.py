@@ -15,6 +15,7 @@ import pytest
 
 import lumped
 from lumped.schema.bodies import bodies_of
+from tests.validation.check.further_values import FURTHER, OF_OTHER_PAIRS
 from tests.validation.check.motions import lumped_motion
 from tests.validation.check.sampled_motions import CHANNELS, LIMIT, sampled
 from tests.validation.check.wrong_readings import (
@@ -34,7 +35,7 @@ from tests.validation.check.wrong_readings import (
 from validation.check.curves import Channel, Curves
 from validation.check.explanations.cause import Variant
 from validation.check.explanations.misreadings import causes_of_channels
-from validation.check.explanations.physics import motion_of
+from validation.check.explanations.physics import Physics, motion_of
 from validation.check.explanations.registry import EXPLANATIONS
 from validation.check.ladder import climb
 from validation.check.problem import Problem
@@ -55,6 +56,7 @@ FIXED = {
     "bearing damping left out": ("unlike", None),
     "inertia by m r^2": ("unlike", "the gear: 2"),
     "radius of the discs": ("unlike", None),
+    "unit of the masses": ("unlike", "1000"),
     "relief ignored": ("relieved", None),
     "deviations": ("eccentric", None),
     "exchanged": ("unlike", "bearings"),
@@ -104,65 +106,6 @@ FIXED = {
     "exponent of the contact force": ("unlike", "exponent 1.5"),
     "long steps": ("unlike", "implicit Euler, 421 a cycle"),
 }
-#: Further fixed values of these causes: name of the cause, label.
-FURTHER = (
-    ("friction over the path", "leading pair"),
-    ("part of friction", "no moment on the gear"),
-    ("profile shifts", "wrong sign: gear"),
-    ("friction over the path", "total load on the leading pair"),
-    ("stiffness over the mesh cycle", "whole mesh for each pair"),
-    ("stiffness over the mesh cycle", "first harmonic"),
-    ("stiffness over the mesh cycle", "two levels"),
-    ("stiffness over the mesh cycle", "levels exchanged"),
-    ("friction over the path", "middle of the path"),
-    ("lever arms of friction", "from A"),
-    ("lever arms of friction", "at the pitch point"),
-    ("static error as an excitation", "second excitation, wrong sign"),
-    ("pitch radius", "diameter"),
-    ("tips exchanged", "approach and recess"),
-    ("tips exchanged", "line turned round"),
-    ("friction over the path", "total load on the newest pair"),
-    ("tips exchanged", "without shifts"),
-    ("number of teeth", "gear: -2"),
-    ("friction over the path", "static load"),
-    ("friction over the path", "equal shares of the load"),
-    ("lever arms of friction", "from both ends"),
-    ("lever arms of friction", "from the pitch point"),
-    ("lever arms of friction", "base radii"),
-    ("zones of contact", "circular pitch, about the middle"),
-    ("zones of contact", "halves, about the middle"),
-    ("table of the stiffness", "12, steps"),
-    ("supports", "rigid gear"),
-    ("supports", "rigid across"),
-    ("damper law", "constant for each pair"),
-    ("values of one for both", "masses of the gear"),
-    ("stiffness over the mesh cycle", "two harmonics"),
-    ("bearing damping left out", "left out, along"),
-    ("radius of the discs", "root circle"),
-    ("radius of the discs", "without bore: gear"),
-    ("radius of the discs", "bores exchanged"),
-    ("radius of the discs", "bore as a radius"),
-    ("exchanged", "bearing stiffness"),
-    ("exchanged", "bearings along"),
-    ("exchanged", "direction of the stiffness"),
-    ("exchanged", "directions of the gear"),
-    ("exchanged", "masses alone"),
-    ("exchanged", "inertias alone"),
-    ("table of the stiffness", "10 of a tooth pair, zero at A"),
-    ("static error as an excitation", "second excitation, three orders"),
-    ("number of pairs that carry", "oldest 2"),
-    ("number of pairs that carry", "last one held"),
-    ("table of the stiffness", "12, spline"),
-    ("table of the stiffness", "12, middles"),
-    ("profile shifts", "times the module, centre kept"),
-    ("friction over the path", "coefficient of the newest pair"),
-    ("friction over the path", "middle of the line of action"),
-    ("static error as an excitation", "stiffness as a force"),
-    ("constant speed of a gear", "the gear, with its damper"),
-    ("formula of the mesh damper", "mass of translation of the pinion"),
-    ("inertia by m r^2", "both gears: 4, GD^2"),
-    ("exponent of the contact force", "exponent 10/9"),
-)
 #: Inputs of one gear.
 OF_ONE_GEAR = {"bore": 1.8, "face width": 0.6, "Young's modulus": 1.7, "profile shift": 0.2}
 OF_ONE_GEAR |= {"amount of the tip relief": 1.8, "length of the tip relief": 0.6}
@@ -346,6 +289,19 @@ def test_further_fixed_values(pairs, shared):
         assert [(step.name, step.factor) for step in ladder.steps] == [(name, label)]
 
 
+@pytest.mark.parametrize(("pair_name", "name", "label"), OF_OTHER_PAIRS)
+def test_fixed_values_of_other_pairs(pair_name, name, label, pairs, shared):
+    pair = pairs[pair_name]
+    motion = lumped_motion(pair)
+    own = Problem.of(pair, sampled(motion), motion)
+    variant = variant_of(EXPLANATIONS[name], label, own)
+    other = motion_of(variant.pair, variant.physics, None)
+    ladder = climbed(Problem.of(pair, sampled(other), motion), shared, pair_name, name, most_motions=300)
+    first = ladder.steps[0]
+    assert (name, label) in [(one.name, one.factor) for one in (first, *first.alternatives)]
+    assert first.misfit < 0.3 * LIMIT
+
+
 def test_dampers_that_stay_are_told_with_the_inertia(pairs, shared):
     """A damper [N s/m] of the inertia of before: one explanation, not a second wrong damping."""
     pair = pairs["unlike"]
@@ -485,6 +441,8 @@ def test_transmission_error_of_other_displacements(words, share_pinion, share_ge
         ("friction", "the sum of the sizes", None),
         ("mesh_force", "the load of the leading tooth pair alone", None),
         ("mesh_force", "per millimetre of face width", 1e-3),
+        ("dte", "the rotations alone, as an angle of the gear in arc seconds", None),
+        ("dte", "an angle of the pinion in degrees", 1.0),
     ],
 )
 def test_channel_that_holds_another_quantity(name, words, share, pairs, shared):
@@ -516,6 +474,10 @@ def test_channel_that_holds_another_quantity(name, words, share, pairs, shared):
         ),
         "the magnitude, without sign": np.abs(values["y_g"]),
         "per millimetre of face width": values["mesh_force"] * 1e-3 / g.face_width,
+        "the rotations alone, as an angle of the gear in arc seconds": np.degrees(
+            3600.0 * rotations / g.base_radius_gear
+        ),
+        "an angle of the pinion in degrees": np.degrees(values["dte"] / g.base_radius_pinion),
     }[words]
     changed_curves = changed(curves, (name,), lambda v: wrong)
     problem = Problem.of(pair, changed_curves, motion)
@@ -590,6 +552,35 @@ def test_speed_of_the_other_gear(pairs, shared):
     ladder = climbed(problem, shared, "unlike", "speed of the curves")
     assert [step.name for step in ladder.steps] == ["speed of the curves"]
     assert ladder.steps[0].factor == pytest.approx(29 / 47, rel=1e-3)
+
+
+def test_circular_pitch_in_the_mesh_period(pairs, shared):
+    """Mesh cycles of p_t = pi m last longer by 1/cos(alpha); a pair touches as long as before."""
+    pair = pairs["unlike"]
+    g = pair.geometry
+    cosine = np.cos(g.operating_pressure_angle)
+    speed = pair.operating.pinion_speed * 30.0 / np.pi * cosine
+    less = g.contact_ratio * (1.0 - cosine)
+    before = (g.L_XP - g.L_XA) / (g.L_XD - g.L_XA)
+    ends = 0.25 + 0.75 / (g.contact_ratio - less)  # ISO 6336-1, by the mistaken contact ratio
+    slower = pair.with_({"operating.pinion_speed": speed, "mesh.stiffness.end_ratio": ends})
+    other = motion_of(slower, Physics(path_start=before * less, path_end=-(1.0 - before) * less), None)
+    problem = Problem.of(pair, sampled(other, cycles=5, per_cycle=101), lumped_motion(pair))
+    assert problem.frequency.factor == pytest.approx(cosine, rel=1e-6)
+    ladder = climbed(problem, shared, "unlike", "speed of the curves")
+    assert [step.factor for step in ladder.steps] == ["circular pitch, about the pitch point"]
+    assert ladder.steps[0].misfit < 0.05 * LIMIT
+
+
+def test_all_forces_over_the_pitch_radius(pairs, shared):
+    """F_t = T/r is F cos(alpha), with the force F along the line of action."""
+    pair = pairs["unlike"]
+    motion = lumped_motion(pair)
+    names = ("mesh_force", "bearing_force_x_p", "bearing_force_y_p")
+    cosine = np.cos(pair.geometry.operating_pressure_angle)
+    curves = changed(sampled(motion, ("dte", *names)), names, lambda v: cosine * v)
+    ladder = climbed(Problem.of(pair, curves, motion), shared, "unlike", "radius of a channel")
+    assert [step.factor for step in ladder.steps] == ["all forces: a force over the pitch radius"]
 
 
 def test_speed_of_curves_over_mesh_cycles(pairs, shared):

@@ -91,6 +91,23 @@ def test_a_fixed_value_beats_a_free_factor(pair, motions):
     assert first.sentence.startswith("Compatible with ")
 
 
+def test_three_single_explanations_are_named_whatever_they_leave(pair, motions):
+    """Two mistakes at once: each of both is beside the path, alone, although it leaves much."""
+    two = pair.with_({"mesh.stiffness_factor": 1.3, "operating.pinion_torque": 150.0})
+    ladder = ladder_of(pair, sampled(lumped_motion(two), CHANNELS), motions)
+    assert len(ladder.alone) == 3
+    assert len({one.name for one in ladder.alone}) == 3
+    said = {step.sentence for step in ladder.steps}
+    said |= {other.sentence for step in ladder.steps for other in step.alternatives}
+    assert not said & {one.sentence for one in ladder.others_alone}
+    assert said | {one.sentence for one in ladder.others_alone} >= {one.sentence for one in ladder.alone}
+    single = ladder_of(
+        pair, sampled(lumped_motion(pair.with_({"mesh.stiffness_factor": 2.0})), CHANNELS), motions
+    )
+    assert single.alone[0].name == single.steps[0].name
+    assert len(single.alone) == 3
+
+
 def test_what_takes_something_else_away_counts_as_worse(motions):
     """A reversed stiffness needs prescribed contact: under loaded contact one thing more than it says."""
     pair = lumped.load_gear_pair("high_contact_ratio_29_47")

@@ -10,7 +10,7 @@ from tests.validation.check.sampled_motions import COULOMB
 from validation.check.explanations.physics import Physics, altered_system
 from validation.check.explanations.step_schemes import stepped
 
-SCHEMES = ("implicit Euler", "explicit Euler", "semi-implicit Euler", "trapezoidal rule")
+SCHEMES = ("implicit Euler", "explicit Euler", "semi-implicit Euler", "trapezoidal rule", "Runge-Kutta")
 
 
 @pytest.fixture(scope="module", params=["high_contact_ratio_29_47", "rack_25_degrees_always_pushing"])
@@ -58,5 +58,13 @@ def test_the_states_obey_the_scheme(system, scheme):
         m = len(system.coordinates)
         rates = one[m:] + h * now[m:]
         step["semi-implicit Euler"] = np.concatenate([h * rates, h * now[m:]])
+
+        def rate(share, x, place=place):
+            time = (place + share) * h
+            return system.A(time) @ x + system.b(time, motion.brake_torque)
+
+        k2 = rate(0.5, one + 0.5 * h * now)
+        k3 = rate(0.5, one + 0.5 * h * k2)
+        step["Runge-Kutta"] = h / 6.0 * (now + 2.0 * k2 + 2.0 * k3 + rate(1.0, one + h * k3))
         size = np.abs(motion.states).max(axis=0)
         assert np.abs(other - one - step[scheme]) / size == pytest.approx(0.0, abs=1e-9)

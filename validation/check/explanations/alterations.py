@@ -155,23 +155,23 @@ def _friction_course(problem: Problem, variant: Variant) -> list[Choice]:
 
 def _static_friction(variant: Variant) -> Iterator[Choice]:
     """Friction by a load that does not vibrate, and the natural logarithm for the decimal one."""
-    if variant.pair.mesh.contact == "prescribed":
-        yield _altered(
-            "static load",
-            "friction by the static load, shared as the stiffness, not by the load that vibrates",
-            course="static load",
-        )
-        yield _altered(
-            "static load in equal shares",
-            "friction by the static load in equal shares, not by the load that vibrates",
-            course="static load in equal shares",
-        )
+    if variant.pair.healthy is variant.pair and not variant.pair.mesh.stiffness.whole_mesh:
+        for course, words in (
+            ("static load", "friction by the static load, shared as the stiffness"),
+            ("static load in equal shares", "friction by the static load in equal shares"),
+        ):
+            yield Choice(course, f"{words}, not by the load that vibrates", _by_static_load(course))
     if variant.pair.friction.law == "benedict_kelley":
         yield _altered(
             "natural logarithm",
             "the natural logarithm in place of the decimal one in the friction law",
             course="natural logarithm",
         )
+
+
+def _by_static_load(course: str) -> Callable[[Variant], Variant]:
+    """Change of a variant by friction of a static load. Teeth touch from A to D, with their relief."""
+    return lambda variant: variant.with_inputs({"mesh.contact": "prescribed"}).with_physics(course=course)
 
 
 def _reversals(variant: Variant) -> list[Choice]:
@@ -216,41 +216,34 @@ def _smoothed(field: str) -> Callable[[Variant, float], Variant]:
 def _mesh_force_sign(problem: Problem, variant: Variant) -> list[Choice]:
     if variant.pair.shafts is not None:
         return []
-    words = "the mesh force on the translation of the gear with the wrong sign"
-    return [_altered(-1.0, words, mesh_force_gear=-1.0)]
+    words = "the mesh force on the translation of the {} with the wrong sign"
+    return [
+        _altered(-1.0, words.format("gear"), mesh_force_gear=-1.0),
+        _altered("of the pinion", words.format("pinion"), mesh_force_pinion=-1.0),
+    ]
 
 
 def _approach(problem: Problem, variant: Variant) -> list[Choice]:
     """Displacements of the gears that the approach of the teeth leaves out, or has with the wrong sign."""
     if variant.pair.shafts is not None or variant.physics.bearings != "elastic":
         return []
-    return [
-        _altered(
+    texts = (
+        (
             "rotations alone",
-            "an approach of the teeth by the rotations alone, without the displacements of the gears",
-            approach_pinion=0.0,
-            approach_gear=0.0,
+            "by the rotations alone, without the displacements of the gears, as in a torsional model",
+            {"approach_pinion": 0.0, "approach_gear": 0.0},
         ),
-        _altered(
-            "without the pinion",
-            "an approach of the teeth without the displacement of the pinion",
-            approach_pinion=0.0,
-        ),
-        _altered(
-            "without the gear",
-            "an approach of the teeth without the displacement of the gear",
-            approach_gear=0.0,
-        ),
-        _altered(
+        ("without the pinion", "without the displacement of the pinion", {"approach_pinion": 0.0}),
+        ("without the gear", "without the displacement of the gear", {"approach_gear": 0.0}),
+        (
             "sign of the pinion",
-            "an approach of the teeth with the displacement of the pinion of the wrong sign",
-            approach_pinion=-1.0,
+            "with the displacement of the pinion of the wrong sign",
+            {"approach_pinion": -1.0},
         ),
-        _altered(
-            "sign of the gear",
-            "an approach of the teeth with the displacement of the gear of the wrong sign",
-            approach_gear=-1.0,
-        ),
+        ("sign of the gear", "with the displacement of the gear of the wrong sign", {"approach_gear": -1.0}),
+    )
+    return [
+        _altered(label, f"an approach of the teeth {words}", **changes) for label, words, changes in texts
     ]
 
 
@@ -265,6 +258,8 @@ def _arms(problem: Problem, variant: Variant) -> list[Choice]:
         "from both ends": "lever arms of friction that count from the start and the end of contact",
         "from the pitch point": "lever arms of friction that count from the pitch point",
         "of the other gear": "lever arms of friction of pinion and gear exchanged",
+        "of the pinion": "the lever arm of friction of the pinion for both gears",
+        "of the gear": "the lever arm of friction of the gear for both gears",
         "at the pitch point": "lever arms of friction that stay those at the pitch point",
         "pitch radii": "pitch radii as lever arms of friction",
         "base radii": "base radii as lever arms of friction",
@@ -319,32 +314,29 @@ def _prescribed(field: str) -> Callable[[Variant, float], Variant]:
 def _dampers(problem: Problem, variant: Variant) -> list[Choice]:
     if variant.pair.mesh.damping_ratio == 0.0:
         return []
-    return [
-        _altered("constant", "a constant damper of the mesh", damper="constant"),
-        _altered("proportional", "a damper of the mesh proportional to its stiffness", damper="proportional"),
-        _altered(
-            "root of the whole mesh",
-            "one damper by the root of the stiffness of the whole mesh",
-            damper="of the whole mesh",
-        ),
-        _altered(
+    frequency = "proportional at the mesh frequency"
+    texts = (
+        ("constant", "constant", "a constant damper of the mesh"),
+        ("proportional", "proportional", "a damper of the mesh proportional to its stiffness"),
+        ("root of the whole mesh", "of the whole mesh", "one damper by the root of the whole mesh stiffness"),
+        (
+            "constant for each pair",
             "constant for each pair",
             "a constant damper for each tooth pair, the whole one of the mesh",
-            damper="constant for each pair",
         ),
-        *(
-            [
-                _altered(
-                    "proportional, bearings too",
-                    "dampers of mesh and bearings proportional to stiffness, with the ratio of the mesh",
-                    damper="proportional",
-                    proportional_bearings=True,
-                )
-            ]
-            if variant.pair.shafts is None
-            else []
+        (
+            frequency,
+            frequency,
+            "a damper of the mesh proportional to its stiffness, 2 zeta k/omega with the mesh frequency",
         ),
-    ]
+    )
+    choices = [_altered(label, words, damper=law) for label, law, words in texts]
+    if variant.pair.shafts is None:
+        words = "dampers of mesh and bearings proportional to stiffness, with the ratio of the mesh"
+        for law, more in (("proportional", ""), (frequency, " at its frequency")):
+            changes = {"damper": law, "proportional_bearings": True}
+            choices.append(_altered(f"{law}, bearings too", words + more, **changes))
+    return choices
 
 
 def _pulling(problem: Problem, variant: Variant) -> list[Choice]:
@@ -392,6 +384,7 @@ def _exponent(problem: Problem, variant: Variant) -> list[Choice]:
         "exponent 1.5 of one pair": "a contact force with the exponent 1.5, calibrated on a single pair",
         "exponent 1.5 in millimetres": "a contact force with the exponent 1.5 of millimetres",
         "exponent 10/9": "a contact force with the exponent 10/9, calibrated at the mean load",
+        "exponent 2.2": "a contact force with the exponent 2.2, calibrated at the mean load",
     }
     return [_altered(label, words, contact=label) for label, words in texts.items()]
 
@@ -541,12 +534,16 @@ def _causes() -> Iterator[Cause]:
         applies=lambda problem, variant: _has_friction(variant),
     )
     yield altered(
-        "mesh force sign", "the mesh force on the translation of the gear reversed", "-1", _mesh_force_sign
+        "mesh force sign",
+        "the mesh force on the translation of a gear reversed",
+        "-1: of the gear, of the pinion",
+        _mesh_force_sign,
     )
     yield altered(
         "damper law",
         "another law of the dampers of the teeth",
-        "constant, proportional, root of the whole mesh, constant for each pair; bearings too",
+        "constant, proportional (at the mesh frequency too), root of the whole mesh, constant for each pair; "
+        "bearings too",
         _dampers,
     )
     yield altered(
@@ -558,7 +555,7 @@ def _causes() -> Iterator[Cause]:
     yield altered(
         "exponent of the contact force",
         "a contact force that grows with a power of the deflection",
-        "1.5, 1.5 of one pair, 1.5 in millimetres, 10/9",
+        "1.5, 1.5 of one pair, 1.5 in millimetres, 10/9, 2.2",
         _exponent,
     )
     yield Cause(
@@ -636,8 +633,8 @@ def _causes() -> Iterator[Cause]:
     yield altered(
         "lever arms of friction",
         "other lever arms of the friction moments",
-        "from A, from both ends, from the pitch point, of the other gear, at the pitch point, pitch radii, "
-        "base radii",
+        "from A, from both ends, from the pitch point, of the other gear, of one gear, at the pitch point, "
+        "pitch radii, base radii",
         _arms,
     )
     yield altered(

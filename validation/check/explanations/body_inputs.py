@@ -21,6 +21,7 @@ from validation.check.explanations.fields import (
     free_factor,
     on_springs,
     reference_radii,
+    times,
     tip_radii,
 )
 from validation.check.problem import Problem
@@ -33,11 +34,24 @@ _INERTIAS = (
     (0.25, "0.25", "a quarter of its value, as if it were GD^2"),
     (1e3, "1000", "a unit that makes it 1000 times too large"),
     (1e-3, "0.001", "a unit that makes it 1000 times too small"),
+    (1e4, "10000", "kg cm^2 in place of kg m^2"),
 )
-_OF_BOTH = (1e3, 1e-3)
+_OF_BOTH = (1e3, 1e-3, 1e4)
+#: Units by which masses and inertias are mistaken together: factor, words.
+_MASS_UNITS = (
+    (1e3, "1000 times too large, as by kilograms beside newtons and millimetres"),
+    (1e-3, "1000 times too small, as by tonnes beside newtons and metres"),
+    (2.2046226, "in pounds taken for kilograms"),
+    (0.45359237, "divided as if they were pounds"),
+)
 #: Trial factors of a mass, and of a bearing stiffness.
 _MASS = (0.12, 0.35, 0.6, 0.8, 1.25, 1.7, 2.8, 8.0, 25.0)
 _BEARING = (0.01, 0.1, 0.4, 2.5, 10.0, 100.0)
+#: Parts of the values of one gear for both: words and what the names of their fields have in common.
+_PARTS = {
+    "bearings": {"bearing stiffness": "_stiffness", "bearing damping": "_damping_ratio"},
+    "masses": {"mass": ".mass", "inertia": ".inertia"},
+}
 #: Values of a bearing in one direction.
 _BEARING_KEYS = ("stiffness", "damping_ratio")
 
@@ -114,6 +128,14 @@ def _ring(problem: Problem, variant: Variant) -> list[Choice]:
     return choices
 
 
+def _units_of_masses(problem: Problem, variant: Variant) -> list[Choice]:
+    """Masses and inertias of both gears in another unit."""
+    return [
+        choice(f"{factor:.4g}", f"masses and inertias {words}", times(_density, factor))
+        for factor, words in _MASS_UNITS
+    ]
+
+
 def _about_a_diameter(pair: GearPair, gears: Sequence[str]) -> Fields:
     """J/2 + m b^2/12 of a disc of the width b."""
     bodies = bodies_of(pair)
@@ -155,6 +177,10 @@ def _disc(problem: Problem, variant: Variant) -> list[Choice]:
         if all(bores):
             discs["without bore: pinion"] = "a pinion as a disc without bore", radii, (0.0, bores[1])
             discs["without bore: gear"] = "a gear as a disc without bore", radii, (bores[0], 0.0)
+        for place, gear in enumerate(GEARS):
+            if all(bores) and bores[0] != bores[1]:
+                words = f"gears as discs with the bore of the {gear} for both"
+                discs[f"bore of the {gear}"] = words, radii, (bores[place], bores[place])
         if bores[0] != bores[1]:
             discs["bores exchanged"] = "gears as discs with the bore of the other gear", radii, bores[::-1]
         discs["bore as a radius"] = (
@@ -289,6 +315,11 @@ def _one_for_both(problem: Problem, variant: Variant) -> list[Choice]:
             choices.append(
                 choice(f"{what} of the {gear}", f"{words} of the {gear} for both gears", constant(fields))
             )
+            for noun, key in _PARTS[what].items():
+                one = _part(fields, key)
+                if pair.with_(dict(one)) not in (pair, pair.with_(dict(fields))):
+                    text = f"the {noun} of the {gear} for both gears, the other values as they are"
+                    choices.append(choice(f"{noun} of the {gear}", text, constant(one)))
     for line, words in zip(LINES, ("along", "across"), strict=True):
         fields = {
             f"bearings.{gear}.{other}_{key}": getattr(getattr(pair.bearings, gear), f"{line}_{key}")
@@ -299,6 +330,14 @@ def _one_for_both(problem: Problem, variant: Variant) -> list[Choice]:
         if pair.with_(fields) != pair:
             text = f"the bearing stiffness {words} the line of action in both directions"
             choices.append(choice(f"bearings {words}", text, constant(fields)))
+    means: dict[str, float] = {}
+    for gear in GEARS:
+        bearing = getattr(pair.bearings, gear)
+        mean = sum(getattr(bearing, f"{line}_stiffness") for line in LINES) / len(LINES)
+        means |= {f"bearings.{gear}.{line}_stiffness": mean for line in LINES}
+    if pair.with_(means) != pair:
+        text = "the mean of the bearing stiffness of both directions in both of them"
+        choices.append(choice("bearings, mean of both directions", text, constant(means)))
     return choices
 
 
@@ -312,8 +351,14 @@ def _causes() -> Iterator[Cause]:
     yield fixed_values(
         "inertia by m r^2",
         "m r^2 in place of m r^2/2, half of the inertia, GD^2, about a diameter, or another unit",
-        "2, 0.5, 4, 0.25, about a diameter: both gears, one gear; 1000, 0.001",
+        "2, 0.5, 4, 0.25, about a diameter: both gears, one gear; 1000, 0.001; kg cm^2",
         _ring,
+    )
+    yield fixed_values(
+        "unit of the masses",
+        "masses and inertias of both gears in another unit",
+        "1000, 0.001, pounds",
+        _units_of_masses,
     )
     yield fixed_values(
         "radius of the discs",
@@ -330,7 +375,7 @@ def _causes() -> Iterator[Cause]:
     yield fixed_values(
         "values of one for both",
         "bearings or masses of one gear for both gears, or one bearing stiffness for both directions",
-        "bearings, masses: pinion, gear; bearings: along, across",
+        "bearings, masses: pinion, gear, whole or in part; bearings: along, across, mean",
         _one_for_both,
     )
     yield free_factor("inertia", "the inertia of both gears", _MASS, _inertia)

@@ -198,6 +198,37 @@ def with_table(pair: GearPair, elements: MeshElements, entries: int, join: Table
     return _of_whole_mesh(pair, elements, from_table, low + phases[:-1] * pitch)
 
 
+def with_table_of_places(
+    pair: GearPair, elements: MeshElements, entries: int, join: TableJoin
+) -> MeshElements:
+    """Return element laws, friction too, from a table of places at equal steps of the base pitch from A on.
+
+    Each entry holds over its step, with the values at its start or, by "middles", in its middle. A tooth pair
+    carries load in the steps whose place is on its path.
+    """
+    stiffness, friction = elements.stiffness, elements.friction
+    low, high = stiffness.interval
+    step = pair.geometry.base_pitch / entries
+    first = 0.5 if join == "middles" else 0.0
+    count = int(np.ceil((high - low) / step - first - 1e-9))
+    new = (low, low + count * step)
+    inside = 1e-6 * step
+
+    def held(law: PathFunction) -> Callable[[FloatArray], FloatArray]:
+        def at_place(xi: FloatArray) -> FloatArray:
+            number = np.clip(np.floor((xi - low) / step), 0, count - 1)
+            return law(np.clip(low + (number + first) * step, low + inside, high - inside))
+
+        return at_place
+
+    places = np.asarray(low + step * np.arange(count + 1), dtype=np.float64)
+    changed = with_law(pair, elements, fitted(held(stiffness), pair, elements, new, places), new)
+    of_friction = held(friction)
+    size = float(np.abs(of_friction(places[:-1] + 0.5 * step)).max())
+    laws = PathFunction.fit(of_friction, places, places[1:-1], tolerance=TOLERANCE * max(size, 1e-300))
+    return replace(changed, friction=laws)
+
+
 def with_table_of_pair(pair: GearPair, elements: MeshElements, entries: int) -> MeshElements:
     """Return element laws whose stiffness of a tooth pair comes from a table over its path.
 

@@ -20,12 +20,14 @@ import xarray as xr
 
 from lumped.compiler import called, compiled
 from lumped.errors import NumericalError
+from lumped.model.mesh_cycle import PairState
 from lumped.model.period_closure import close_period
 from lumped.model.periodic_system import LTVSystem
 from lumped.model.propagation import fastest_frequency
 from lumped.model.results import dataset
 from lumped.model.steady import UNSTABLE, periodic_solution, relative_spectral_radius, sample_times
 from lumped.typing import FloatArray
+from validation.check.explanations.friction_courses import static_friction
 
 ContactForce = Literal[
     "",
@@ -36,7 +38,15 @@ ContactForce = Literal[
     "exponent 1.5 of one pair",
     "exponent 1.5 in millimetres",
     "exponent 10/9",
+    "exponent 2.2",
+    "friction by the static load",
+    "friction by the static load in equal shares",
 ]
+#: Contact forces of unilateral teeth whose friction follows a load that does not vibrate.
+OF_STATIC_LOAD: tuple[ContactForce, ContactForce] = (
+    "friction by the static load",
+    "friction by the static load in equal shares",
+)
 #: Exponents of the contact force.
 EXPONENTS: Mapping[ContactForce, float] = MappingProxyType(
     {
@@ -44,14 +54,19 @@ EXPONENTS: Mapping[ContactForce, float] = MappingProxyType(
         "exponent 1.5 of one pair": 1.5,
         "exponent 1.5 in millimetres": 1.5,
         "exponent 10/9": 10.0 / 9.0,
+        "exponent 2.2": 2.2,
     }
 )
 #: Kinds of the contact force in the kernel.
-_UNILATERAL, _OPEN_DAMPER, _OF_SUM = range(3)
+_UNILATERAL, _OPEN_DAMPER, _OF_SUM, _GIVEN_FRICTION = range(4)
 _KINDS: Mapping[ContactForce, int] = MappingProxyType(
-    {"damper across the gap": _OPEN_DAMPER, "sum of the pairs": _OF_SUM}
+    {
+        "damper across the gap": _OPEN_DAMPER,
+        "sum of the pairs": _OF_SUM,
+        **dict.fromkeys(OF_STATIC_LOAD, _GIVEN_FRICTION),
+    }
 )
-#: Columns of a table of tooth pairs.
+#: Columns of a table of tooth pairs. Where friction is given, its force stands for the coefficient.
 _K, _C, _MU, _E, _E_RATE, _XI = range(6)
 #: Largest angle of the fastest frequency in a step [rad], fewest and most steps in a mesh cycle.
 _STEP_ANGLE = 0.5
@@ -146,8 +161,9 @@ def write_rates(
     moment = 0.0
     for i in range(pairs.shape[0]):
         normal += loads[i]
-        friction += pairs[i, _MU] * loads[i]
-        moment += pairs[i, _MU] * loads[i] * pairs[i, _XI]
+        of_pair = pairs[i, _MU] if kind == _GIVEN_FRICTION else pairs[i, _MU] * loads[i]
+        friction += of_pair
+        moment += of_pair * pairs[i, _XI]
     for j in range(6):
         rates[j] = state[6 + j]
         total = force[j] + laws[4, j] * normal + laws[5, j] * friction + laws[6, j] * moment
@@ -216,7 +232,14 @@ class _Runs:
         middle = float(system.cycle.elements.stiffness(np.array([0.5 * (low + high)]))[0])
         references = {"exponent 1.5 of one pair": force / middle, "exponent 1.5 in millimetres": 1e-3}
         self.reference = references.get(contact, self.deflection)
+        self.equal = contact == OF_STATIC_LOAD[1]
         self.cycle = self._cycle(with_rate=contact != "no rate of the errors")
+
+    def friction_of(self, pairs: PairState) -> FloatArray:
+        """What the friction of each pair is made of (pairs, k): its coefficient, or its force [N]."""
+        if self.kind != _GIVEN_FRICTION:
+            return pairs.friction
+        return static_friction(self.system, pairs, equal=self.equal)
 
     def _cycle(self, *, with_rate: bool) -> _Cycle:
         """The mesh cycle in steps that end at outputs and wherever a law of a pair jumps or bends."""
@@ -247,7 +270,7 @@ class _Runs:
         columns = (
             pairs.stiffness,
             pairs.damping,
-            pairs.friction,
+            self.friction_of(pairs),
             pairs.error,
             pairs.error_rate,
             pairs.position,
@@ -362,6 +385,8 @@ def _labelled(runs: _Runs, state: FloatArray, brake: float, attributes: Mapping[
     torques = {"pinion_torque": system.pinion_torque, "brake_torque": brake}
     motion = dataset(system, times, states, dict(attributes) | torques)
     friction = motion["mu"].to_numpy() * loads
+    if runs.kind == _GIVEN_FRICTION:
+        friction = runs.friction_of(system.cycle.sample(times))
     for name, values in (("normal_load", loads), ("friction_force", friction)):
         motion[name] = motion[name].copy(data=values)
     return motion

@@ -57,7 +57,7 @@ class StaticFriction(LTVSystem):
         """Return FORCE (k, 3) of the linear form at times (k,) [s], and its pairs."""
         pairs = self.cycle.sample(time, segment)
         forces = pairs.forces.copy()
-        friction = static_friction(self, pairs)
+        friction = static_friction(self, pairs, equal=self.equal)
         for row in (BY_APPROACH, BY_RATE):
             forces["friction_force"][..., row] = 0.0
             forces["friction_moment"][..., row] = 0.0
@@ -72,10 +72,13 @@ class EqualStaticFriction(StaticFriction):
     equal = True
 
 
-def static_friction(system: StaticFriction, pairs: PairState) -> FloatArray:
-    """Return the friction force (pairs, k) of each tooth pair by its share of the static load [N]."""
+def static_friction(system: LTVSystem, pairs: PairState, *, equal: bool) -> FloatArray:
+    """Return the friction force (pairs, k) of each tooth pair by its share of the static load [N].
+
+    ``equal``: each pair in contact has the same share; else shares are as the stiffnesses.
+    """
     force = system.pinion_torque / system.pair.geometry.base_radius_pinion
-    weights = pairs.contact.astype(float) if system.equal else pairs.stiffness
+    weights = pairs.contact.astype(float) if equal else pairs.stiffness
     share = weights / np.maximum(weights.sum(axis=0), np.finfo(float).tiny)
     return np.asarray(force * share * pairs.friction)
 

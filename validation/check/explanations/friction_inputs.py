@@ -27,6 +27,7 @@ FrictionInput = Literal[
     "",
     "mean of the rolling velocities",
     "sum of the rolling velocities",
+    "sum of the rolling velocities everywhere",
     "half of the slide-to-roll ratio",
     "half of the modulus",
     "twice the modulus",
@@ -53,6 +54,13 @@ class _SumOfRolling(ContactPath):
 
     def slide_to_roll(self, xi: FloatArray) -> FloatArray:
         return np.asarray(2.0 * self.sliding_velocity(xi) / super().entraining_velocity(xi))
+
+
+class _SumEverywhere(ContactPath):
+    """The sum of both rolling velocities where a law wants their mean, in the slide-to-roll ratio too."""
+
+    def entraining_velocity(self, xi: FloatArray) -> FloatArray:
+        return 2.0 * super().entraining_velocity(xi)
 
 
 class _HalfSlideToRoll(ContactPath):
@@ -101,6 +109,11 @@ FRICTION_INPUTS: Mapping[FrictionInput, _Mistake] = MappingProxyType(
             "the sum of both rolling velocities in place of their mean in the friction law",
             ("xu_kahraman",),
             _SumOfRolling,
+        ),
+        "sum of the rolling velocities everywhere": _Mistake(
+            "the sum of both rolling velocities in place of their mean everywhere in the friction law",
+            ("xu_kahraman",),
+            _SumEverywhere,
         ),
         "half of the slide-to-roll ratio": _Mistake(
             "a slide-to-roll ratio with the sum of the rolling velocities, not their mean",

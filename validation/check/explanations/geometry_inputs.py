@@ -151,6 +151,11 @@ def _shifts(problem: Problem, variant: Variant) -> list[Choice]:
             words = "profile shifts" if which == "both" else f"a profile shift of the {which}"
             choices.append(choice(f"wrong sign: {which}", f"{words} with the wrong sign", constant(fields)))
         choices += _other_shifts(variant.pair, none)
+        for name, shift in dict(zip(GEARS, (first, second), strict=True)).items():
+            if first != second:
+                alike = none | {f"{one}.profile_shift": shift for one in GEARS} | {"centre_distance": None}
+                words = f"the profile shift of the {name} for both gears"
+                choices.append(choice(f"of the {name} for both", words, constant(alike)))
     standard = sum(reference_radii(variant.pair)) / variant.pair.geometry.centre_distance
     if abs(standard - 1.0) > _SAME_CENTRE:
         words = "the standard centre distance, half of the module times the sum of the teeth"
@@ -290,7 +295,7 @@ def _causes() -> Iterator[Cause]:
         "profile shifts",
         "profile shifts ignored, exchanged or with the wrong sign; the standard centre distance",
         "ignored (both, one gear), wrong sign (both, one gear), millimetres (at the centre distance that "
-        "follows, or at the right one), standard centre, exchanged",
+        "follows, or at the right one), standard centre, exchanged, of one gear for both",
         _shifts,
     )
     yield fixed_values(

@@ -6,7 +6,7 @@ Sources: docs/how_to/check_your_model.md, "Explanations".
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from lumped.fields.units import to_stated
@@ -29,7 +29,10 @@ from validation.check.explanations.fields import (
     free_factor,
     on_springs,
     times,
+    with_prescribed_contact,
 )
+from validation.check.explanations.path_alterations import may_vary, recess_share, with_ends_of
+from validation.check.mesh_frequency import circular_over_base
 from validation.check.problem import Problem
 
 #: Trial factors of a stiffness or a load.
@@ -289,12 +292,38 @@ def _speed_of_gear(problem: Problem, variant: Variant) -> list[Choice]:
         cause = cause or "the mesh frequency shows another speed"
         others = "".join(f", or {one}" for one in _other_frequencies(variant.pair, shown))
         words = f"a motion at {shown:.4g} times the speed: {cause}{others}"
-        return [choice(shown, words, lambda pair: _speed(pair, shown))]
+        return [
+            choice(shown, words, lambda pair: _speed(pair, shown)),
+            *_circular_pitches(problem, variant, shown),
+        ]
     ratio = _ratio(variant.pair)
     turns = {math.pi / 30.0: "rpm taken for rad/s", 30.0 / math.pi: "rad/s taken for rpm"}
     if ratio != 1.0:
         turns |= {ratio: "the pinion's speed on the gear", 1.0 / ratio: "the gear's speed on the pinion"}
     return [choice(value, words, times(_speed, value)) for value, words in turns.items()]
+
+
+def _circular_pitches(problem: Problem, variant: Variant, shown: float) -> Iterator[Choice]:
+    """The circular pitch for the base pitch: mesh cycles are longer by 1/cos(alpha), and pairs touch less."""
+    ratio = variant.pair.geometry.contact_ratio
+    less = ratio * (shown - 1.0)
+    is_one = min(abs(shown / cosine - 1.0) for cosine in circular_over_base(variant.pair)) < _SAME_VELOCITY
+    if not (is_one and may_vary(problem, variant) and ratio + less >= 1.0):
+        return
+
+    def change(share: float) -> Callable[[Variant], Variant]:
+        def changed(one: Variant) -> Variant:
+            slower = with_prescribed_contact(one).with_inputs(dict(_speed(one.pair, shown)))
+            ends = with_ends_of(slower, less)
+            return ends.with_physics(path_start=-(1.0 - share) * less, path_end=share * less)
+
+        return changed
+
+    words = "the circular pitch in place of the base pitch, in the mesh period and between tooth pairs"
+    yield Choice("circular pitch", f"{words}, from the start of contact", change(1.0))
+    # Approach and recess in the same ratio: positions over the circular pitch.
+    share = recess_share(variant.pair)
+    yield Choice("circular pitch, about the pitch point", words, change(share))
 
 
 def _other_frequencies(pair: GearPair, factor: float) -> Iterator[str]:
@@ -317,7 +346,7 @@ def _fixed() -> Iterator[Cause]:
     yield fixed_values(
         "speed of the curves",
         "the speed that the mesh frequency of the curves shows",
-        "ratio of the teeth, half, twice, rpm, rad/s",
+        "ratio of the teeth, half, twice, rpm, rad/s; circular pitch",
         _speed_of_gear,
     )
     yield fixed_values(

@@ -18,6 +18,7 @@ _WORDS: dict[Scheme, str] = {
     "implicit Euler": "implicit (backward) Euler steps",
     "explicit Euler": "explicit Euler steps",
     "semi-implicit Euler": "semi-implicit Euler steps (displacements by the new rates)",
+    "Runge-Kutta": "steps of the Runge-Kutta method of fourth order",
     "trapezoidal rule": "steps of the trapezoidal rule, as of Newmark's method",
 }
 #: Steps between two samples of the curves, and fewest steps in a mesh cycle.
@@ -29,6 +30,7 @@ _MOST: dict[Scheme, int] = {
     "explicit Euler": 2000,
     "semi-implicit Euler": 200,
     "trapezoidal rule": 200,
+    "Runge-Kutta": 100,
 }
 
 
@@ -60,6 +62,6 @@ LONG_STEPS = Cause(
     name="long steps",
     kind=Kind.PHYSICS,
     meaning="too long steps of a simple integrator, one or some of them from sample to sample",
-    span="implicit, explicit, semi-implicit Euler, trapezoidal rule; 1, 2, 4 steps a sample",
+    span="implicit, explicit, semi-implicit Euler, trapezoidal rule, Runge-Kutta; 1, 2, 4 steps a sample",
     choices=_schemes,
 )

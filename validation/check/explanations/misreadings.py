@@ -16,10 +16,14 @@ import numpy as np
 
 from validation.check.curves import Channel
 from validation.check.explanations.cause import Cause, Choice, Kind, Variant
-from validation.check.explanations.fields import tip_radii
+from validation.check.explanations.radius_readings import (
+    ANGLES,
+    groups,
+    radii_of_channels,
+    reading_choice,
+)
 from validation.check.explanations.reading import (
     Reading,
-    families,
     refined_curves_fit,
     turning_channels,
 )
@@ -91,24 +95,13 @@ _HALF_BACKLASH = 0.05
 _DELAY = (-0.15, -0.05, 0.05, 0.15)
 
 
-def _reading(label: float | str, words: str, change: Callable[[Reading], Reading]) -> Choice:
-    """A fixed value that changes the reading."""
-    return Choice(label, words, lambda variant: variant.with_reading(change(variant.reading)))
-
-
-def _groups(problem: Problem) -> dict[str, tuple[str, ...]]:
-    """Families of channels, then each channel alone: words -> names."""
-    channels = problem.curves.channels
-    return families(channels) | {channel.name: (channel.name,) for channel in channels}
-
-
 def _signs(problem: Problem, variant: Variant) -> list[Choice]:
     def turned(names: Sequence[str]) -> Callable[[Reading], Reading]:
         return lambda reading: reading.with_factors(dict.fromkeys(names, -1.0))
 
     return [
-        _reading(words, f"the sign of {words} reversed", turned(names))
-        for words, names in _groups(problem).items()
+        reading_choice(words, f"the sign of {words} reversed", turned(names))
+        for words, names in groups(problem).items()
     ]
 
 
@@ -128,7 +121,7 @@ def _units(problem: Problem, variant: Variant) -> list[Choice]:
 
     choices = []
     kinds = {channel.name: channel.kind.unit for channel in problem.curves.channels}
-    for words, group in _groups(problem).items():
+    for words, group in groups(problem).items():
         names = tuple(name for name in group if name in ratios)
         if not names:  # no channel of the group is compared
             continue
@@ -142,48 +135,8 @@ def _units(problem: Problem, variant: Variant) -> list[Choice]:
             if nearer < (distance - math.log(_NEARER) if vague else (1.0 - _TAKES) * distance):
                 label = f"{words}: {factor:.6g}"
                 text = f"{words} {factor:.4g} times too large ({unit.words})"
-                choice = _reading(label, text, times(names, factor))
+                choice = reading_choice(label, text, times(names, factor))
                 choices.append(choice._replace(vague=vague))
-    return choices
-
-
-def _radii(problem: Problem, variant: Variant) -> list[Choice]:
-    """Lengths for angles, angles of the other gear, or the transmission error as an angle."""
-    g = problem.pair.geometry
-    ratio = g.base_radius_gear / g.base_radius_pinion
-    radii = {"pinion": g.base_radius_pinion, "gear": g.base_radius_gear}
-    choices = []
-    for channel in problem.curves.channels:
-        factors: dict[str, float] = {}
-        name = channel.quantity
-        if name.startswith("dte"):
-            factors = {f"an angle of the {gear}": 1.0 / radius for gear, radius in radii.items()}
-            cosine = math.cos(g.operating_pressure_angle)
-            factors |= {"a length on the pitch circle": 1.0 / cosine, "a length over 1/cos(alpha)": cosine}
-            for gear, tip in zip(radii, tip_radii(problem.pair), strict=True):
-                factors[f"a length on the tip circle of the {gear}"] = tip / radii[gear]
-        elif name.startswith("theta"):
-            own = "pinion" if "_p" in name else "gear"
-            factors = {"a length on the base circle": radii[own]}
-            if ratio != 1.0:
-                factors |= {
-                    "the angle times the ratio of the teeth": ratio,
-                    "the angle over the ratio of the teeth": 1.0 / ratio,
-                }
-        elif channel.kind.unit == "N":
-            factors = {
-                "a force per millimetre of face width": 1e-3 / g.face_width,
-                "a force over the static mesh force": g.base_radius_pinion
-                / problem.pair.operating.pinion_torque,
-                "a torque on the pinion": g.base_radius_pinion,
-                "a torque on the gear": g.base_radius_gear,
-            }
-        for words, factor in factors.items():
-
-            def change(reading: Reading, name: str = channel.name, factor: float = factor) -> Reading:
-                return reading.with_factors({name: factor})
-
-            choices.append(_reading(f"{channel.name}: {words}", f"{channel.name} as {words}", change))
     return choices
 
 
@@ -205,7 +158,7 @@ def _swapped(problem: Problem, variant: Variant) -> list[Choice]:
         }
         if len(changes) > 2:
             text = f"the channels of {words} swapped"
-            choices.append(_reading(f"all of {words}", text, becoming(changes)))
+            choices.append(reading_choice(f"all of {words}", text, becoming(changes)))
     if len(channels) > _MOST_SWAPPED:
         return choices
     for one, other in itertools.combinations(channels, 2):
@@ -213,7 +166,7 @@ def _swapped(problem: Problem, variant: Variant) -> list[Choice]:
         if same and one.quantity != other.quantity:
             changes = {one.name: other.quantity, other.name: one.quantity}
             text = f"the channels {one.name} and {other.name} swapped"
-            choices.append(_reading(f"{one.name} and {other.name}", text, becoming(changes)))
+            choices.append(reading_choice(f"{one.name} and {other.name}", text, becoming(changes)))
     return choices
 
 
@@ -261,7 +214,7 @@ def _other_quantities(problem: Problem, variant: Variant) -> list[Choice]:
                 return reading.with_quantities({name: quantity}).with_factors({name: factor})
 
             label = f"{channel.name}: {words}"
-            choices.append(_reading(label, f"{words} in the channel {channel.name}", change))
+            choices.append(reading_choice(label, f"{words} in the channel {channel.name}", change))
             alike.setdefault(words, {})[channel.name] = quantity, factor
     return choices + [_all_alike(words, channels) for words, channels in alike.items() if len(channels) > 1]
 
@@ -271,7 +224,7 @@ def _all_alike(words: str, channels: Mapping[str, tuple[str, float]]) -> Choice:
     quantities = {name: quantity for name, (quantity, _) in channels.items()}
     factors = {name: factor for name, (_, factor) in channels.items()}
     names = ", ".join(channels)
-    return _reading(
+    return reading_choice(
         f"{names}: {words}",
         f"{words} in the channels {names}",
         lambda reading: reading.with_quantities(quantities).with_factors(factors),
@@ -289,6 +242,11 @@ def _mistaken(problem: Problem, kind: Quantity) -> Iterator[tuple[str, str, floa
             "dte of the rotations",
             1.0 / cosine,
         )
+        g = problem.pair.geometry
+        for gear, radius in (("pinion", g.base_radius_pinion), ("gear", g.base_radius_gear)):
+            for unit, per_radian in {"radians": 1.0, **ANGLES}.items():
+                words = f"the rotations alone, as an angle of the {gear} in {unit},"
+                yield words, "dte of the rotations", per_radian / radius
         yield "the displacements of the bearings with the wrong sign", "dte with reversed displacements", 1.0
         yield "no displacement of the gear", "dte without the gear's", 1.0
         yield "no displacement of the pinion", "dte without the pinion's", 1.0
@@ -346,7 +304,7 @@ def _places(problem: Problem, variant: Variant) -> list[Choice]:
     if not names or variant.reading.places or rows > PLACES:
         return []
     return [
-        _reading(
+        reading_choice(
             label,
             f"places of the mesh in the channels of tooth pairs, {label}, not the same pair all the time",
             partial(replace, places=label),
@@ -382,7 +340,7 @@ def _most_orders(problem: Problem, variant: Variant) -> list[Choice]:
             if ours < _SOMETHING:
                 return []
             words = f"the first {most} mesh orders alone" if most > 1 else "the first mesh order alone"
-            return [_reading(most, words, partial(replace, most_orders=most))]
+            return [reading_choice(most, words, partial(replace, most_orders=most))]
     return []
 
 
@@ -399,7 +357,7 @@ def _offsets(problem: Problem, variant: Variant) -> list[Choice]:
 
     half = 0.5 * problem.pair.mesh.backlash
     dead_zone = [
-        _reading(
+        reading_choice(
             f"{row.channel.channel.name}: half of the backlash",
             "a dead zone of the backlash about zero, so that teeth touch at half of the backlash",
             without_means((row.channel.channel.name,)),
@@ -410,31 +368,31 @@ def _offsets(problem: Problem, variant: Variant) -> list[Choice]:
     ]
     explained = {"dte"} if dead_zone else set()
     return dead_zone + [
-        _reading(words, f"another zero of {words}: the means differ", without_means(names))._replace(
+        reading_choice(words, f"another zero of {words}: the means differ", without_means(names))._replace(
             vague=True
         )
-        for words, names in _groups(problem).items()
+        for words, names in groups(problem).items()
         if differing & {*names} and not explained & {*names}
     ]
 
 
 def _reversed(problem: Problem, variant: Variant) -> list[Choice]:
     turned = not variant.reading.reversed
-    return [_reading("reversed", "time that runs backwards", lambda r: replace(r, reversed=turned))]
+    return [reading_choice("reversed", "time that runs backwards", lambda r: replace(r, reversed=turned))]
 
 
 def _step(problem: Problem, variant: Variant) -> list[Choice]:
     if problem.refined is None or not refined_curves_fit(problem.curves, problem.refined):
         return []
     words = "a step of integration that is too long: half the step gives other curves"
-    return [_reading("half the step", words, lambda reading: replace(reading, refined=True))]
+    return [reading_choice("half the step", words, lambda reading: replace(reading, refined=True))]
 
 
 def _phase(problem: Problem, variant: Variant) -> list[Choice]:
     if problem.given_shift is None:
         return []
     words = "another phase than the stated one"
-    return [_reading("searched", words, lambda reading: replace(reading, free_shift=True))]
+    return [reading_choice("searched", words, lambda reading: replace(reading, free_shift=True))]
 
 
 def _time_axis(problem: Problem, variant: Variant) -> list[Choice]:
@@ -445,12 +403,12 @@ def _time_axis(problem: Problem, variant: Variant) -> list[Choice]:
     words = f"a time axis {factor:.4g} times too fast, with the motion at the speed of the pair"
     if problem.frequency.cause in factors_of_times(problem.pair):
         words += f": {problem.frequency.cause}"
-    return [_reading(1.0 / factor, words, lambda reading: reading)]
+    return [reading_choice(1.0 / factor, words, lambda reading: reading)]
 
 
 def causes_of_channels(problem: Problem) -> list[Cause]:
     """Return the free causes of each channel and family: a delay against the others, a filter of its own."""
-    groups = _groups(problem)
+    of_channels = groups(problem)
     every = len(problem.curves.channels)
 
     def late(names: Sequence[str]) -> Callable[[Variant, float], Variant]:
@@ -464,7 +422,7 @@ def causes_of_channels(problem: Problem) -> list[Cause]:
     def of_group(cause: Cause, words: str, change: Callable[[Variant, float], Variant], part: str) -> Cause:
         return replace(cause, words=words, change=change, applies=lambda problem, variant: True, part=part)
 
-    some = {words: names for words, names in groups.items() if len(names) < every}
+    some = {words: names for words, names in of_channels.items() if len(names) < every}
     return [
         *(
             of_group(DELAY, f"{words} {{value}} mesh cycles late against the others", late(names), words)
@@ -536,8 +494,8 @@ def _causes() -> Iterator[Cause]:
     yield read(
         "radius of a channel",
         "an angle for a length, or of the other gear",
-        "base radii, tip radii, ratio, cos(alpha)",
-        _radii,
+        "base radii, tip radii, ratio, cos(alpha); degrees, arc seconds, microradians",
+        radii_of_channels,
     )
     yield read("channels swapped", "two channels swapped", "pairs of channels", _swapped)
     yield read(

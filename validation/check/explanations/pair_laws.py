@@ -23,7 +23,14 @@ from lumped.schema.pair import GearPair
 from lumped.stiffness.base import RAMP
 from lumped.typing import FloatArray
 
-Damper = Literal["of each pair", "of the whole mesh", "proportional", "constant", "constant for each pair"]
+Damper = Literal[
+    "of each pair",
+    "of the whole mesh",
+    "proportional",
+    "constant",
+    "constant for each pair",
+    "proportional at the mesh frequency",
+]
 Stiffness = Literal[
     "",
     "reversed",
@@ -61,17 +68,22 @@ def damper_factor(pair: GearPair, elements: MeshElements, law: Damper) -> Callab
     """Return the factor over xi from the damper of each pair, 2 zeta sqrt(k_i m_e), to another law.
 
     With K the sum of k_i over all pairs, each pair takes its part k_i/K of the damper of the mesh:
-    2 zeta sqrt(K m_e), proportional 2 zeta K sqrt(m_e/mean K), constant 2 zeta sqrt(mean K m_e). A constant
-    damper for each pair is the whole of the last one.
+    2 zeta sqrt(K m_e), proportional 2 zeta K sqrt(m_e/mean K), or 2 zeta K/omega with the mesh frequency,
+    constant 2 zeta sqrt(mean K m_e). A constant damper for each pair is the whole of the last one.
     """
     total = total_of_pairs(pair, elements.stiffness)
     mean = mean_of_pairs(elements.stiffness, pair.geometry.base_pitch)
     mass = bodies_of(pair).effective_mass
+    at_frequency = mass * (2.0 * np.pi / pair.geometry.mesh_period) ** 2
 
     def factor(xi: FloatArray) -> FloatArray:
         whole = np.maximum(total(xi), 1e-6 * mean)
         stiffness = np.maximum(elements.stiffness(xi), 1e-6 * mean)
-        under_root = {"of the whole mesh": whole, "proportional": whole**2 / mean}.get(law, mean)
+        under_root = {
+            "of the whole mesh": whole,
+            "proportional": whole**2 / mean,
+            "proportional at the mesh frequency": whole**2 / at_frequency,
+        }.get(law, mean)
         of_mesh = damping_coefficient(1.0, np.asarray(under_root + 0.0 * whole), mass)
         of_pair = damping_coefficient(1.0, stiffness, mass)
         if law == "constant for each pair":

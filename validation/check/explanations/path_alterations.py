@@ -8,8 +8,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
+from lumped.schema.pair import GearPair
 from lumped.stiffness.energy import EnergyStiffness
-from lumped.stiffness.parabolic import ParabolicStiffness
+from lumped.stiffness.parabolic import ParabolicStiffness, iso_end_ratio
 from validation.check.explanations.cause import Cause, Choice, Kind, Variant
 from validation.check.explanations.contact_laws import COMPLIANCES, Compliance, TableJoin
 from validation.check.explanations.fields import reference_radii, tip_radii, with_prescribed_contact
@@ -26,6 +27,9 @@ _TABLES: Mapping[TableJoin, tuple[int, ...]] = {
     "middles": (8, 10, 12, 16, 20, 24, 30, 36),
     "spline": (8, 10, 12, 16, 20, 24),
 }
+#: The same of tables that have the friction coefficient too: joins, entries.
+_OF_FRICTION_TOO: tuple[TableJoin, ...] = ("steps", "middles")
+_TABLES_WITH_FRICTION = (8, 10, 12, 16, 20)
 _JOINED: Mapping[TableJoin, str] = {
     "lines": "joined by straight lines",
     "steps": "without interpolation",
@@ -52,7 +56,19 @@ def _changed(label: float | str, words: str, change: Callable[[Variant], Variant
 
 def _path(start: float, end: float) -> Callable[[Variant], Variant]:
     """Change of a variant by base pitches by which the path of contact starts and ends later."""
-    return lambda variant: variant.with_physics(path_start=start, path_end=end)
+    return lambda variant: with_ends_of(variant, end - start).with_physics(path_start=start, path_end=end)
+
+
+def with_ends_of(variant: Variant, longer: float) -> Variant:
+    """Return a variant whose parabola has the ends of a path that is longer by so many base pitches.
+
+    Only where the contact ratio decides the ends, as in ISO 6336-1.
+    """
+    stiffness = variant.pair.mesh.stiffness
+    if not isinstance(stiffness, ParabolicStiffness) or stiffness.end_ratio is not None:
+        return variant
+    ratio = max(variant.pair.geometry.contact_ratio + longer, 1.0)
+    return variant.with_inputs({"mesh.stiffness.end_ratio": iso_end_ratio(ratio)})
 
 
 def _contact_ratio(problem: Problem, variant: Variant) -> list[Choice]:
@@ -85,9 +101,18 @@ def _contact_ratio(problem: Problem, variant: Variant) -> list[Choice]:
         for ending, text, share in (
             ("", ", from the true start of contact", 1.0),
             (", about the middle", ", about the middle of the path", 0.5),
+            # Approach and recess in the same ratio: positions over the circular pitch.
+            (", about the pitch point", ", about the pitch point", recess_share(variant.pair)),
         )
+        if share in (0.5, 1.0) or label == "circular pitch"
         if value >= 1.0 and abs(value - ratio) > _APART
     ]
+
+
+def recess_share(pair: GearPair) -> float:
+    """Return the share of the path of contact behind the pitch point."""
+    g = pair.geometry
+    return (g.L_XD - g.L_XP) / (g.L_XD - g.L_XA)
 
 
 def _lines_of_action(problem: Problem, variant: Variant) -> list[Choice]:
@@ -121,6 +146,8 @@ def _lines_of_action(problem: Problem, variant: Variant) -> list[Choice]:
     }
     choices = []
     for label, (whole, tips, words) in lines.items():
+        if label.startswith("of the rack") and abs(whole - g.L_XY) / g.base_pitch < _APART:
+            continue  # shifts that balance: the line is the same
         reaches = [
             math.sqrt(tip**2 - base**2)
             for tip, base in zip(tips, (g.base_radius_pinion, g.base_radius_gear), strict=True)
@@ -133,7 +160,7 @@ def _lines_of_action(problem: Problem, variant: Variant) -> list[Choice]:
         def change(
             one: Variant, start: float = start, end: float = end, other: bool = whole != g.L_XY
         ) -> Variant:
-            moved = one.with_physics(path_start=start, path_end=end)
+            moved = with_ends_of(one, end - start).with_physics(path_start=start, path_end=end)
             if not other or one.pair.friction.law == "none":
                 return moved
             return moved.with_physics(course="line of the rack", arms="line of the rack")
@@ -158,8 +185,8 @@ def _tables(problem: Problem, variant: Variant) -> list[Choice]:
     if not may_vary(problem, variant):
         return []
 
-    def change(entries: int, join: TableJoin) -> Callable[[Variant], Variant]:
-        return lambda one: one.with_physics(table=entries, table_join=join)
+    def change(entries: int, join: TableJoin, *, friction: bool = False) -> Callable[[Variant], Variant]:
+        return lambda one: one.with_physics(table=entries, table_join=join, table_of_friction=friction)
 
     def of_pair(entries: int) -> Callable[[Variant], Variant]:
         return lambda one: one.with_physics(pair_table=entries)
@@ -173,6 +200,16 @@ def _tables(problem: Problem, variant: Variant) -> list[Choice]:
         for join, counts in _TABLES.items()
         for entries in counts
     ]
+    if variant.pair.friction.law != "none":
+        choices += [
+            _changed(
+                f"{entries}, {join}, friction too",
+                f"a table of {entries} entries a mesh cycle of stiffness and friction, {_JOINED[join]}",
+                change(entries, join, friction=True),
+            )
+            for join in _OF_FRICTION_TOO
+            for entries in _TABLES_WITH_FRICTION
+        ]
     choices += [
         _changed(
             f"{abs(entries)} of a tooth pair{', zero at A' if entries < 0 else ''}",
@@ -268,7 +305,7 @@ def _causes() -> Iterator[Cause]:
     yield fixed(
         "zones of contact",
         "another contact ratio: zones exchanged, of equal length, the circular pitch for the base pitch",
-        "zones exchanged, circular pitch, halves; from A, about the middle",
+        "zones exchanged, circular pitch, halves; from A, about the middle, about the pitch point",
         _contact_ratio,
     )
     yield fixed(
@@ -286,7 +323,8 @@ def _causes() -> Iterator[Cause]:
     yield fixed(
         "table of the stiffness",
         "a table of the stiffness of the mesh, or of a tooth pair, that is too coarse",
-        f"{_TABLES['lines'][0]} to {_TABLES['steps'][-1]} entries a mesh cycle; lines, steps, splines",
+        f"{_TABLES['lines'][0]} to {_TABLES['steps'][-1]} entries a mesh cycle; lines, steps, splines; with "
+        "friction",
         _tables,
     )
     yield fixed(

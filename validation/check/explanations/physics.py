@@ -46,8 +46,9 @@ from validation.check.explanations.contact_laws import (
     with_peak,
     with_table,
     with_table_of_pair,
+    with_table_of_places,
 )
-from validation.check.explanations.contact_motion import ContactForce, contact_motion
+from validation.check.explanations.contact_motion import OF_STATIC_LOAD, ContactForce, contact_motion
 from validation.check.explanations.error_laws import CommonError, with_common_error, with_relief_signs
 from validation.check.explanations.friction_courses import (
     STATIC_LOAD,
@@ -113,6 +114,8 @@ Arms = Literal[
     "from both ends",
     "from the pitch point",
     "of the other gear",
+    "of the pinion",
+    "of the gear",
     "at the pitch point",
     "pitch radii",
     "base radii",
@@ -130,7 +133,7 @@ class Physics:
     friction : factor on the friction coefficient; negative: friction acts against its true sense
     moment_pinion, moment_gear : factors on the moments of friction about the axes
     force_pinion, force_gear : factors on the friction forces on the translations
-    mesh_force_gear : factor on the mesh force along the line of action of the gear
+    mesh_force_gear, mesh_force_pinion : factors on the mesh force along the line of action of a gear
     approach_pinion, approach_gear : factors on the displacements of the gears in the approach of the teeth
     arms : lever arms of the friction moments
     mass_damping : dampers of all coordinates in proportion to their masses, as a damping ratio at the mesh
@@ -146,6 +149,7 @@ class Physics:
     path_start, path_end : base pitches by which the path of contact starts and ends further along its line
     table : entries of a table of the stiffness of the whole mesh over a mesh cycle; 0: no table
     table_join : how the entries of this table are joined
+    table_of_friction : whether the friction coefficient is in this table too
     compliance : change of parts of the compliance of the energy method
     peak : share of half the path by which the peak of a parabola lies further along it
     stiffness : change of the stiffness of the tooth pairs over the mesh cycle
@@ -180,6 +184,7 @@ class Physics:
     force_pinion: float = 1.0
     force_gear: float = 1.0
     mesh_force_gear: float = 1.0
+    mesh_force_pinion: float = 1.0
     approach_pinion: float = 1.0
     approach_gear: float = 1.0
     arms: Arms = ""
@@ -196,6 +201,7 @@ class Physics:
     path_end: float = 0.0
     table: int = 0
     table_join: TableJoin = "lines"
+    table_of_friction: bool = False
     compliance: Compliance = ""
     peak: float = 0.0
     stiffness: Stiffness = ""
@@ -271,6 +277,7 @@ _OF_EQUATIONS = (
     "force_pinion",
     "force_gear",
     "mesh_force_gear",
+    "mesh_force_pinion",
     "approach_pinion",
     "approach_gear",
     "arms",
@@ -321,11 +328,9 @@ def motion_of(
     if physics.contact and not (prescribed and pair.shafts is None and physics.bearings == "elastic"):
         raise NumericalError("Another contact force needs prescribed contact and springs.")
     again = recurrence or pair.pinion.teeth
-    system = altered_system(pair, physics)
     if physics.contact:
-        return MotionCurves.of(
-            pair, contact_motion(system, physics.contact, provenance(pair), _SAMPLES_OF_CONTACT), 1, again
-        )
+        return _contact_motion(pair, physics, physics.contact, again)
+    system = altered_system(pair, physics)
     if physics.pulling or prescribed:
         linear = _linear_motion(system, physics, samples)
         if linear is not None:
@@ -337,7 +342,9 @@ def motion_of(
     if physics.late_force:
         raise NumericalError("Forces that come late make the motion unstable, or teeth part.")
     if physics.course in STATIC_LOAD:
-        raise NumericalError("Friction by the static load needs prescribed contact that is not lost.")
+        if not (prescribed and pair.shafts is None and physics.bearings == "elastic"):
+            raise NumericalError("Friction by the static load needs prescribed contact and springs.")
+        return _contact_motion(pair, physics, OF_STATIC_LOAD[STATIC_LOAD.index(physics.course)], again)
     if physics.of_equations:
         start = periodic_solution(system, np.zeros(1), estimate_error=False)
         if start.spectral_radius > _GROWS:
@@ -351,9 +358,20 @@ def motion_of(
     return MotionCurves(pair, plain, motion.period, again)
 
 
-def altered_system(pair: GearPair, physics: Physics) -> LTVSystem:
-    """Return the "full" system of a pair with alterations of the model."""
-    cycle = MeshCycle(pair.geometry, altered_elements(pair, physics))
+def _contact_motion(pair: GearPair, physics: Physics, contact: ContactForce, again: int) -> MotionCurves:
+    """The motion with another contact force, of laws that hold where teeth are apart in statics."""
+    system = altered_system(pair, replace(physics, course=""), unilateral=True)
+    return MotionCurves.of(
+        pair, contact_motion(system, contact, provenance(pair), _SAMPLES_OF_CONTACT), 1, again
+    )
+
+
+def altered_system(pair: GearPair, physics: Physics, *, unilateral: bool = False) -> LTVSystem:
+    """Return the "full" system of a pair with alterations of the model.
+
+    ``unilateral``: with the stiffness also where a pair is apart under the static load.
+    """
+    cycle = MeshCycle(pair.geometry, altered_elements(pair, physics, unilateral=unilateral))
     equations = altered_equations(pair, physics) if physics.of_equations else None
     supports = supports_of(pair, None)
     kind = _SYSTEMS.get(physics.course, LTVSystem)
@@ -373,6 +391,7 @@ def altered_equations(pair: GearPair, physics: Physics) -> Structure:
     deflection[X_P] *= physics.approach_pinion
     deflection[X_G] *= physics.approach_gear
     normal[X_G] *= physics.mesh_force_gear
+    normal[X_P] *= physics.mesh_force_pinion
     arm[THETA_P] *= physics.moment_pinion
     arm[THETA_G] *= physics.moment_gear
     arm[Y_P] *= physics.force_pinion
@@ -381,7 +400,9 @@ def altered_equations(pair: GearPair, physics: Physics) -> Structure:
     if physics.bearings != "elastic":
         for forces in (normal, deflection, arm, apart):
             forces[list(_HELD[physics.bearings])] = 0.0
-    damping = proportional_dampers(pair) if physics.proportional_bearings else s.damping
+    damping = s.damping
+    if physics.proportional_bearings:
+        damping = proportional_dampers(pair, at_frequency=physics.damper.endswith("frequency"))
     damping = damping + damping_of_masses(pair, physics.mass_damping)
     return replace(s, damping=damping, normal=normal, deflection=deflection, friction_arm=arm, apart=apart)
 
@@ -411,6 +432,10 @@ def friction_arms(pair: GearPair, arms: Arms) -> FloatArray:
     elif arms == "of the other gear":
         arm[THETA_P] = -g.L_XY, 1.0
         arm[THETA_G] = 0.0, 1.0
+    elif arms == "of the pinion":
+        arm[THETA_G] = 0.0, 1.0
+    elif arms == "of the gear":
+        arm[THETA_P] = -g.L_XY, 1.0
     elif arms == "at the pitch point":
         arm[THETA_P] = -g.L_XP, 0.0
         arm[THETA_G] = g.L_XY - g.L_XP, 0.0
@@ -421,11 +446,15 @@ def friction_arms(pair: GearPair, arms: Arms) -> FloatArray:
     return arm
 
 
-def proportional_dampers(pair: GearPair) -> FloatArray:
+def proportional_dampers(pair: GearPair, *, at_frequency: bool = False) -> FloatArray:
     """Return dampers (6,) of the bearings in proportion to their stiffness, with the ratio of the mesh.
 
-    c = k 2 zeta sqrt(m_e/mean K), as the mesh damper is to the mean stiffness of the mesh.
+    c = k 2 zeta sqrt(m_e/mean K), as the mesh damper is to the mean stiffness of the mesh. ``at_frequency``:
+    c = k 2 zeta/omega with the mesh frequency.
     """
+    if at_frequency:
+        time = pair.mesh.damping_ratio * pair.geometry.mesh_period / math.pi
+        return np.asarray(time * structure(pair).stiffness)
     mean = mean_of_pairs(contact_of(pair).elements(pair).stiffness, pair.geometry.base_pitch)
     time = 2.0 * pair.mesh.damping_ratio * math.sqrt(bodies_of(pair).effective_mass / mean)
     return np.asarray(time * structure(pair).stiffness)
@@ -437,9 +466,10 @@ def damping_of_masses(pair: GearPair, ratio: float) -> FloatArray:
     return np.asarray(2.0 * ratio * frequency * structure(pair).mass)
 
 
-def altered_elements(pair: GearPair, physics: Physics) -> MeshElements:
+def altered_elements(pair: GearPair, physics: Physics, *, unilateral: bool = False) -> MeshElements:
     """Return the element laws of a tooth pair with alterations of stiffness, dampers and friction."""
-    elements = contact_of(pair).elements(pair)
+    contact = contact_of(pair)
+    elements = contact.unilateral_elements(pair) if unilateral else contact.elements(pair)
     if physics.compliance:
         elements = with_compliance(pair, elements, physics.compliance)
     if physics.peak:
@@ -456,7 +486,9 @@ def altered_elements(pair: GearPair, physics: Physics) -> MeshElements:
         elements = with_variation(pair, elements, physics.variation)
     if physics.smoothing > 0.0:
         elements = with_smoothing(pair, elements, physics.smoothing)
-    if physics.table:
+    if physics.table and physics.table_of_friction:
+        elements = with_table_of_places(pair, elements, physics.table, physics.table_join)
+    elif physics.table:
         elements = with_table(pair, elements, physics.table, physics.table_join)
     if physics.pair_table:
         elements = with_table_of_pair(pair, elements, physics.pair_table)
@@ -547,7 +579,7 @@ def _linear_motion(system: LTVSystem, physics: Physics, samples: int) -> PlainMo
     if not physics.pulling and motion.values["normal_load"].min() < -LOAD_NOISE * force:
         return None
     if isinstance(system, StaticFriction):
-        friction = static_friction(system, system.cycle.sample(times))
+        friction = static_friction(system, system.cycle.sample(times), equal=system.equal)
         motion = _with_values(motion, {"friction_force": friction})
     return _with_bearing_forces(motion, physics, system)
 

@@ -5,7 +5,8 @@ With x' = A(t) x + f(t) and a step h from t_n to t_(n+1)
     implicit Euler       x_(n+1) = (I - h A_(n+1))^-1 (x_n + h f_(n+1)),
     explicit Euler       x_(n+1) = x_n + h (A_n x_n + f_n),
     semi-implicit Euler  the new rates by the old state, then the new displacements by the new rates,
-    trapezoidal rule     x_(n+1) = (I - h/2 A_(n+1))^-1 (x_n + h/2 (A_n x_n + f_n + f_(n+1))).
+    trapezoidal rule     x_(n+1) = (I - h/2 A_(n+1))^-1 (x_n + h/2 (A_n x_n + f_n + f_(n+1))),
+    Runge-Kutta          the classical method of fourth order, with A and f in the middle of the step too.
 
 Sources: Hairer and Wanner, Solving Ordinary Differential Equations II, IV.3, for the schemes; the trapezoidal
 rule is Newmark's method with gamma 1/2 and beta 1/4; docs/how_to/check_your_model.md, "Explanations".
@@ -23,7 +24,9 @@ from lumped.model.periodic_system import LTVSystem
 from lumped.model.steady import relative_spectral_radius
 from lumped.typing import FloatArray
 
-Scheme = Literal["", "implicit Euler", "explicit Euler", "semi-implicit Euler", "trapezoidal rule"]
+Scheme = Literal[
+    "", "implicit Euler", "explicit Euler", "semi-implicit Euler", "trapezoidal rule", "Runge-Kutta"
+]
 
 
 class Stepped(NamedTuple):
@@ -70,12 +73,7 @@ def stepped(system: LTVSystem, scheme: Scheme, steps: int, samples: int) -> Step
 def _maps(system: LTVSystem, scheme: Scheme, steps: int) -> tuple[FloatArray, FloatArray]:
     """Maps (steps, n, n) of all steps, and what the three forcings of a linear motion add (steps, n, 3)."""
     h = system.period / steps
-    times = np.arange(steps) * h
-    a = system.matrices(times)
-    torques = np.stack([system.torque_pinion, system.torque_gear], axis=1)
-    forcing = np.concatenate(
-        [system.forcing(times)[:, :, None], np.broadcast_to(torques, (steps, *torques.shape))], axis=2
-    )
+    a, forcing = _coefficients(system, h * np.arange(steps, dtype=np.float64))
     unit = np.eye(system.size)
     if scheme == "explicit Euler":
         return np.asarray(unit + h * a, dtype=np.float64), np.asarray(h * forcing)
@@ -86,6 +84,8 @@ def _maps(system: LTVSystem, scheme: Scheme, steps: int) -> tuple[FloatArray, Fl
         drift = unit.copy()
         drift[:m, m:] = h * np.eye(m)
         return np.asarray(drift @ (unit + kick), dtype=np.float64), np.asarray(h * drift @ forcing)
+    if scheme == "Runge-Kutta":
+        return _runge_kutta(system, h, a, forcing)
     next_a, next_forcing = np.roll(a, -1, axis=0), np.roll(forcing, -1, axis=0)
     if scheme == "implicit Euler":
         inverse = np.linalg.inv(unit - h * next_a)
@@ -93,3 +93,32 @@ def _maps(system: LTVSystem, scheme: Scheme, steps: int) -> tuple[FloatArray, Fl
     inverse = np.linalg.inv(unit - 0.5 * h * next_a)
     maps = np.asarray(inverse @ (unit + 0.5 * h * a), dtype=np.float64)
     return maps, np.asarray(0.5 * h * inverse @ (forcing + next_forcing), dtype=np.float64)
+
+
+def _coefficients(system: LTVSystem, times: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """A (k, n, n) at times (k,), and the three forcings of a linear motion (k, n, 3)."""
+    torques = np.stack([system.torque_pinion, system.torque_gear], axis=1)
+    of_torques = np.broadcast_to(torques, (times.size, *torques.shape))
+    forcing = np.concatenate([system.forcing(times)[:, :, None], of_torques], axis=2)
+    return system.matrices(times), np.asarray(forcing, dtype=np.float64)
+
+
+def _runge_kutta(
+    system: LTVSystem, h: float, a: FloatArray, forcing: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Maps and additions of the classical method of fourth order: each slope is linear in the state."""
+    middle_a, middle = _coefficients(system, h * np.arange(0.5, a.shape[0], dtype=np.float64))
+    unit = np.eye(system.size)
+    slopes = [(a, forcing)]
+    for share, here, force in (
+        (0.5, middle_a, middle),
+        (0.5, middle_a, middle),
+        (1.0, np.roll(a, -1, axis=0), np.roll(forcing, -1, axis=0)),
+    ):
+        of_state, of_force = slopes[-1]
+        slopes.append((here @ (unit + share * h * of_state), here @ (share * h * of_force) + force))
+    maps, additions = (
+        h / 6.0 * (one + 2.0 * (second + third) + last)
+        for one, second, third, last in zip(*slopes, strict=True)
+    )
+    return np.asarray(unit + maps, dtype=np.float64), np.asarray(additions, dtype=np.float64)

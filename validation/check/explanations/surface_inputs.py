@@ -29,7 +29,7 @@ _DEVIATIONS = (0.5, 2.0)
 _END_RATIO = (0.4, 0.7, 1.2, 1.5)
 #: Trial amounts by which one profile shift grows and the other one falls.
 _BALANCE = (-0.3, -0.12, 0.12, 0.3)
-#: Torques of other units in N m: the pound-force inch, the pound-force foot and the kilogram-force metre.
+#: Torques of other units in N m: the pound-force inch and foot, the kilogram-force metre, thousands.
 _TORQUE_UNITS = (
     ("N m taken for pound-force inches", 0.1129848),
     ("pound-force inches taken for N m", 1.0 / 0.1129848),
@@ -37,6 +37,8 @@ _TORQUE_UNITS = (
     ("pound-force feet taken for N m", 1.0 / 1.3558179),
     ("N m taken for kilogram-force metres", 9.80665),
     ("kilogram-force metres taken for N m", 1.0 / 9.80665),
+    ("N m taken for kN m", 1e3),
+    ("N mm taken for N m", 1e-3),
 )
 #: Addenda, or lengths over the base pitch, closer than this are one.
 _SAME = 5e-3
@@ -85,6 +87,11 @@ def _measures_of_roughness(problem: Problem, variant: Variant) -> list[Choice]:
         ("sum of both", "as the sum of those of both gears, in place of their mean", 2.0),
         ("root of both", "as the root of the sum of the squares of both gears, in place of the mean", root),
         ("half of both", "half of the mean of both gears", 0.5),
+        *(
+            (f"of the {gear}", f"of the {gear} for both gears", 2.0 * one / max(first + second, 1e-300))
+            for gear, one in zip(_GEARS, (first, second), strict=True)
+            if first != second and one > 0.0
+        ),
     )
     return [
         Choice(label, f"the roughness {words}", change(factor)) for label, words, factor in composites
