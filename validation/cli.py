@@ -126,6 +126,17 @@ def _forget_narrow_terminal() -> None:
         del os.environ["COLUMNS"]
 
 
+def _hide_dask() -> None:
+    """Let xarray find no dask in this process.
+
+    With the extra ``cluster`` xarray would import dask, to see whether an array is one of dask. None is.
+    """
+    if "xarray" in sys.modules:
+        return  # it has found dask
+    modules: dict[str, Any] = sys.modules
+    modules["dask"] = None  # its import raises ImportError
+
+
 def main() -> None:
     """Entry point of the installed command."""
     # Must be set before numpy is imported. The matrices are small: BLAS threads only wait for each other.
@@ -136,6 +147,8 @@ def main() -> None:
     gc.set_threshold(5_000_000)
     _open_streams()
     _forget_narrow_terminal()
+    if sys.argv[1:2] == ["report"]:
+        _hide_dask()
     interrupt_once()  # to the end of the process: an impatient Ctrl-C prints no traceback
     try:
         app(prog_name="spurcheck")

@@ -1,20 +1,32 @@
-"""Signals that stop the program: Ctrl-C, SIGTERM of batch systems, SIGHUP of a closed terminal."""
+"""Signals that stop the program: Ctrl-C, SIGTERM of batch systems, SIGHUP of a closed terminal.
+
+The first signal raises KeyboardInterrupt, which does not arrive by itself everywhere:
+
+- numba looks for no errors while it makes Python objects of the results of compiled code, and the process
+  crashes. Most signals arrive in compiled code, and Python handles them in the first function behind it.
+- In a function that a library in C calls, and in ``__del__``, Python prints the error and goes on.
+- A library makes another error of it: exudyn an ImportError of its import.
+"""
 
 from __future__ import annotations
 
 import os
 import signal
+import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from types import FrameType
 from typing import Any
 
 _NAMES = ("SIGINT", "SIGTERM", "SIGHUP")
 _OURS = (signal.SIG_DFL, signal.default_int_handler)
+#: Whether a signal has stopped the program, since the last call of ``interrupt_once``.
+_stopped = threading.Event()
 
 
-def _signals() -> list[signal.Signals]:
+def stop_signals() -> list[signal.Signals]:
     """Return the signals for which this thread can set a handler. Empty outside the main thread."""
     if threading.current_thread() is not threading.main_thread() or os.name != "posix":
         return []
@@ -26,25 +38,70 @@ def interrupt_once() -> dict[signal.Signals, Any]:
 
     Signals that nohup, a shell or the caller handles are left alone. Returns signal -> earlier handler.
     """
-    before = {number: signal.getsignal(number) for number in _signals()}
+    before = {number: signal.getsignal(number) for number in stop_signals()}
     before = {number: handler for number, handler in before.items() if handler in _OURS}
+    _stopped.clear()
 
     def stop(number: int, frame: FrameType | None) -> None:
         for each in before:
             signal.signal(each, signal.SIG_IGN)
-        raise KeyboardInterrupt
+        _stopped.set()
+        sys.unraisablehook = partial(_ignored, sys.unraisablehook)
+        if _makes_results(frame):
+            sys.setprofile(_interrupt_behind)  # called at the next call or return of a function
+        else:
+            raise KeyboardInterrupt
 
     for number in before:
         signal.signal(number, stop)
     return before
 
 
+def _makes_results(frame: FrameType | None) -> bool:
+    """Whether numba makes Python objects of results: it reads a stored class, or calls that of a record."""
+    if frame is not None and (frame.f_code.co_filename, frame.f_code.co_name) == ("<string>", "<lambda>"):
+        return True  # the constructor of a NamedTuple
+    while frame is not None:
+        if frame.f_code.co_name == "_numba_unpickle":
+            return True
+        frame = frame.f_back
+    return False
+
+
+def _ignored(earlier: Callable[[Any], object], unraisable: Any, /) -> None:
+    """Raise a KeyboardInterrupt again that Python ignored. Takes what ``sys.unraisablehook`` takes."""
+    if isinstance(unraisable.exc_value, KeyboardInterrupt):
+        sys.setprofile(_interrupt_behind)
+    else:
+        earlier(unraisable)
+
+
+def _interrupt_behind(frame: FrameType, event: str, argument: Any) -> None:
+    """Raise KeyboardInterrupt in the first function where it arrives."""
+    if frame.f_code is not _ignored.__code__ and not _makes_results(frame):
+        sys.setprofile(None)
+        raise KeyboardInterrupt
+
+
+@contextmanager
+def interruption_kept() -> Iterator[None]:
+    """Raise KeyboardInterrupt where the block raises another error after a signal."""
+    try:
+        yield
+    except Exception:
+        if _stopped.is_set():
+            raise KeyboardInterrupt from None
+        raise
+
+
 @contextmanager
 def stopping_as_interrupt() -> Iterator[None]:
     """Let the first signal in the block raise KeyboardInterrupt. Later signals in the block are ignored."""
     before = interrupt_once()
+    hook = sys.unraisablehook
     try:
         yield
     finally:
+        sys.unraisablehook = hook
         for number, handler in before.items():
             signal.signal(number, handler)

@@ -37,13 +37,17 @@ class StageColumn(ProgressColumn):
         return Text(task.description if seconds < _LONG else f"{task.description} ({seconds} s)")
 
 
-def bar_of_stages(console: Console) -> Progress:
-    """Return a progress bar on a console. Nothing is drawn on a console that is no terminal."""
+def bar_of_stages(console: Console, *, moving: bool = True) -> Progress:
+    """Return a progress bar on a console. Nothing is drawn on a console that is no terminal.
+
+    A bar that is not ``moving`` is drawn when it changes, and has no thread.
+    """
     return Progress(
         StageColumn(),
         BarColumn(),
         TimeElapsedColumn(),
         console=console,
         transient=True,
+        auto_refresh=moving,
         disable=not console.is_terminal,
     )

@@ -2,11 +2,13 @@
 
 import ast
 import json
+import math
 import subprocess
 import sys
 import tomllib
 from fnmatch import fnmatch
 from importlib import import_module
+from importlib.util import find_spec
 from inspect import unwrap
 from pathlib import Path
 
@@ -106,6 +108,41 @@ def test_a_report_without_a_record_loads_nothing_that_reads_and_judges_records()
     assert "validation.reporting.chapters.record" in modules
     assert not [name for name in modules if name.startswith("validation.check")]
     assert "scipy.stats" not in modules  # a third of a second, before the first result
+
+
+def test_samples_do_not_import_scipy_stats_once_their_points_are_stored():
+    """It takes a quarter of a second, in both processes of a report."""
+    samples = (
+        "import lumped; from validation.prediction.uncertainty import uncertainty; "
+        "uncertainty(lumped.load_gear_pair('nasa_28_28').with_({'uncertainty': {"
+        "'operating.pinion_torque': '+- 4 %'}}), 16)"
+    )
+    loaded(samples, math.inf)  # another run has stored the points, or this one does
+    _, modules = loaded(samples, math.inf)
+    assert "validation.prediction.sobol" in modules
+    assert "scipy.stats" not in modules
+
+
+#: In the place of the report it prints what is imported of dask.
+IN_A_REPORT = """
+import sys, types
+from validation.cli import main
+def report(*arguments, **options):
+    import xarray
+    xarray.Dataset({"x": ("time", [1.0])}).to_dataframe()
+    print(*(name for name in sys.modules if name.startswith("dask.")), "no more")
+    sys.exit()
+sys.modules["validation.reporting.build"] = types.SimpleNamespace(report=report)
+sys.argv[1:] = ["report", "nasa_28_28"]
+main()
+"""
+
+
+@pytest.mark.skipif(find_spec("dask") is None, reason="xarray finds no dask anyway")
+def test_a_report_does_not_import_dask(tmp_path):
+    """With the extra ``cluster`` xarray would import it, before the first result."""
+    command = [sys.executable, "-c", IN_A_REPORT]
+    assert subprocess.check_output(command, cwd=tmp_path, text=True).strip() == "no more"
 
 
 ROOT = Path(__file__).parents[2]

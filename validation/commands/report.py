@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import ExitStack
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -72,9 +73,13 @@ def report(
         raise refuse("--require", "record", "with a record", "Add --record FILE.")
     check_target(output, force=force)
     name, gear_pair = pair
-    from validation.reporting.second_process import second_process
+    from validation.reporting.start import second_process
 
-    with progress_bar("report") as bar, second_process(), counted(bar) as tell:
+    with ExitStack() as opened:
+        with progress_bar("loading", moving=False):  # the second process begins while there is one thread
+            opened.enter_context(second_process())
+        bar = opened.enter_context(progress_bar("report"))
+        tell = opened.enter_context(counted(bar))
         tell(0.0, "loading")
         from validation.reporting import report as write  # the bar is there and the second process runs
 

@@ -26,6 +26,7 @@ from rich.text import Text
 from typer.core import TyperCommand
 
 from validation.files.formatting import number, quantity
+from validation.stop_signals import interruption_kept
 
 if TYPE_CHECKING:
     from lumped.typing import Progress
@@ -213,7 +214,8 @@ def guarded(command: Callable[..., None]) -> Callable[..., None]:
                 note(text)
 
         try:
-            with warnings.catch_warnings(), without_bars():  # a command draws its bar itself
+            # A command draws its bar itself.
+            with interruption_kept(), warnings.catch_warnings(), without_bars():
                 warnings.simplefilter("always", LawRangeWarning)
                 warnings.showwarning = show
                 for name, check in checks:
@@ -286,11 +288,14 @@ def note(text: str) -> None:
 
 
 @contextmanager
-def progress_bar(text: str) -> Iterator[Progress]:
-    """Show a progress bar on stderr while the block runs. Without a terminal nothing is drawn."""
+def progress_bar(text: str, *, moving: bool = True) -> Iterator[Progress]:
+    """Show a progress bar on stderr while the block runs. Without a terminal nothing is drawn.
+
+    A bar that is not ``moving`` stands still, and has no thread.
+    """
     from lumped.display.terminal_bar import bar_of_stages
 
-    with bar_of_stages(stderr()) as bar:
+    with bar_of_stages(stderr(), moving=moving) as bar:
         task = bar.add_task(text, total=1.0)
 
         def tell(fraction: float, stage: str = "", /) -> None:

@@ -30,7 +30,7 @@ from lumped.schema.meeting_teeth import period_of
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 from validation.prediction.motion import QUANTITIES, Motion, predicted, predicted_by_long_steps
-from validation.prediction.uncertainty import PERCENTILES, TEETH, each_sample
+from validation.prediction.uncertainty import PERCENTILES, TEETH, Sampled, each_sample
 
 #: Results whose range the ratios widen.
 WIDENED = ("dynamic_factor", "tooth_load", "bearing_rms")
@@ -76,8 +76,24 @@ def assumed_teeth(
     ``contact_lost``, the number of machines whose mesh force reaches zero; ``period`` of the teeth in mesh
     cycles; ``inputs``, "varied" or "as given"
     """
+    sampled = drawn_machines(pair, at_operating_speed, machines, seconds)
+    return results_of_machines(pair, sampled, varied=at_operating_speed is not None)
+
+
+def drawn_machines(
+    pair: GearPair,
+    at_operating_speed: xr.Dataset | None,
+    machines: int,
+    seconds: float | None,
+    part: slice = slice(None),
+) -> Sampled[list[float]]:
+    """Return the results of each machine. Arguments as in `assumed_teeth` and `each_sample`."""
     drawn = with_assumed_class(pair)
-    sampled = each_sample(drawn, at_operating_speed, machines, _beside_twin, seconds)
+    return each_sample(drawn, at_operating_speed, machines, _beside_twin, seconds, part)
+
+
+def results_of_machines(pair: GearPair, sampled: Sampled[list[float]], *, varied: bool) -> xr.Dataset:
+    """Return the dataset of `assumed_teeth`. ``varied``: the inputs are varied."""
     table = np.array(sampled.results, dtype=float).reshape(-1, len(WIDENED) + 2)
     unit, text = TEETH[REVOLUTION]
     variables: dict[str, Variable] = {REVOLUTION: ("machine", table[:, 0], unit, text)}
@@ -89,9 +105,9 @@ def assumed_teeth(
         "taken": sampled.taken,
         "asked": sampled.asked,
         "contact_lost": int(table[:, -1].sum()),
-        "period": period_of(drawn),
+        "period": period_of(with_assumed_class(pair)),
         "tolerance_class": ASSUMED_TOLERANCE_CLASS,
-        "inputs": "as given" if at_operating_speed is None else "varied",
+        "inputs": "varied" if varied else "as given",
     }
     return labelled_dataset(variables, {}, attributes)
 

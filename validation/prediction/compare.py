@@ -39,6 +39,7 @@ from validation.files.formatting import side_by_side
 from validation.prediction.inputs import uncertain_inputs
 from validation.prediction.machines import errors_of, with_errors
 from validation.prediction.motion import QUANTITIES, Motion, predicted
+from validation.prediction.sobol import sobol_points
 from validation.prediction.uncertain_input import Input
 from validation.prediction.uncertainty import (
     ALONE,
@@ -50,7 +51,6 @@ from validation.prediction.uncertainty import (
     end_shares,
     importance_of,
     of_teeth,
-    sobol_points,
     varied,
 )
 

@@ -11,6 +11,7 @@ binomial distribution of order statistics, David and Nagaraja, Order Statistics,
 from __future__ import annotations
 
 import functools
+import itertools
 import math
 import threading
 import warnings
@@ -21,6 +22,7 @@ from typing import Generic, TypeVar
 
 import numpy as np
 import xarray as xr
+from scipy.special import bdtr
 
 import lumped
 from floquet.orbits.deadline import Deadline
@@ -39,6 +41,7 @@ from lumped.typing import FloatArray, ProgressRequest
 from validation.prediction.inputs import SEED_FIELDS, forms_beside, uncertain_inputs
 from validation.prediction.machines import errors_of, with_errors
 from validation.prediction.motion import ORDERS, QUANTITIES, Motion, Prediction, predicted
+from validation.prediction.sobol import SEED, sobol_points
 from validation.prediction.uncertain_input import Input
 from validation.signals.averages import GEARS, sidebands
 
@@ -46,8 +49,6 @@ from validation.signals.averages import GEARS, sidebands
 PERCENTILES = (5.0, 50.0, 95.0)
 #: Probability that a percentile lies in its interval.
 _SURE = 0.9
-#: Seed of the Sobol points where no samples at the operating speed state one.
-_SEED = 1
 #: Share of the samples that must have a motion.
 _LEAST = 0.5
 #: Least number of samples of a range where the time limit ended the samples: with 32 samples the interval
@@ -285,9 +286,27 @@ def speed_band(
     have a motion. Attributes ``taken``, the number of begun samples, and ``asked``, the number of requested
     samples
     """
-    sampled = each_sample(
-        pair, at_operating_speed, samples, lambda one: _peaks(one, speeds_rpm, step_angle), seconds
+    sampled = peaks_over_speed(pair, speeds_rpm, at_operating_speed, samples, step_angle, seconds)
+    return range_over_speed(speeds_rpm, sampled)
+
+
+def peaks_over_speed(
+    pair: GearPair,
+    speeds_rpm: FloatArray,
+    at_operating_speed: xr.Dataset,
+    samples: int,
+    step_angle: float,
+    seconds: float | None,
+    part: slice = slice(None),
+) -> Sampled[FloatArray]:
+    """Return the peaks to peaks (speed,) of each sample. Arguments as in `speed_band` and `each_sample`."""
+    return each_sample(
+        pair, at_operating_speed, samples, lambda one: _peaks(one, speeds_rpm, step_angle), seconds, part
     )
+
+
+def range_over_speed(speeds_rpm: FloatArray, sampled: Sampled[FloatArray]) -> xr.Dataset:
+    """Return the dataset of `speed_band`."""
     low = high = np.full(np.shape(speeds_rpm), np.nan)
     if len(sampled.results) >= least_samples(sampled.asked, LEAST_BAND):
         low, high = np.nanpercentile(np.array(sampled.results), PERCENTILES[::2], axis=0)
@@ -347,15 +366,17 @@ def each_sample(
     samples: int,
     run: Callable[[GearPair], T],
     seconds: float | None,
+    part: slice = slice(None),
 ) -> Sampled[T]:
     """Return results at samples of the inputs until the processor time [s] is over.
 
     ``run`` computes a machine. ``at_operating_speed`` as in `speed_band`; None: the teeth of a tolerance
-    class alone are drawn, and all other inputs are as given.
+    class alone are drawn, and all other inputs are as given. ``part``: the samples that are computed; the
+    processor time is that of the part.
     """
     deadline = Deadline(seconds)
     inputs = uncertain_inputs(pair)
-    seed = _SEED
+    seed = SEED
     if at_operating_speed is None:
         inputs = tuple(one for one in inputs if one.field in SEED_FIELDS)
         importance = np.ones(len(inputs))
@@ -366,7 +387,8 @@ def each_sample(
         seed = int(at_operating_speed.attrs["seed"])
     results = list[T]()
     taken = 0
-    for point in sobol_points(importance, samples, seed):
+    points = sobol_points(importance, samples, seed)[part]
+    for point in points:
         if deadline.passed:
             break
         taken += 1
@@ -374,7 +396,22 @@ def each_sample(
             results.append(run(varied(pair, [(one, float(u)) for one, u in zip(inputs, point, strict=True)])))
         except SpurcheckError:
             continue
-    return Sampled(tuple(results), taken, samples)
+    return Sampled(tuple(results), taken, len(points))
+
+
+def parts_of(samples: int, parts: int) -> list[slice]:
+    """Return the parts of the samples for ``each_sample``, of equal length to one sample."""
+    ends = [samples * number // parts for number in range(parts + 1)]
+    return [slice(low, high) for low, high in itertools.pairwise(ends)]
+
+
+def joined(parts: Sequence[Sampled[T]]) -> Sampled[T]:
+    """Return the results of all parts as if one call had computed them."""
+    return Sampled(
+        tuple(result for part in parts for result in part.results),
+        sum(part.taken for part in parts),
+        sum(part.asked for part in parts),
+    )
 
 
 def _peaks(pair: GearPair, speeds_rpm: FloatArray, step_angle: float) -> FloatArray:
@@ -393,12 +430,9 @@ def percentile_interval(count: int, percentile: float) -> tuple[int, int]:
 
     The number of samples below a percentile is binomial. The interval therefore holds for every distribution.
     """
-    from scipy.stats import binom
-
-    low, high = (
-        float(binom.ppf(p, count, percentile / 100.0)) for p in (0.5 - 0.5 * _SURE, 0.5 + 0.5 * _SURE)
-    )
-    return max(int(low) - 1, 0), min(int(high), count - 1)
+    at_most = bdtr(np.arange(count + 1.0), count, percentile / 100.0)
+    low, high = np.searchsorted(at_most, (0.5 - 0.5 * _SURE, 0.5 + 0.5 * _SURE)).tolist()
+    return max(low - 1, 0), min(high, count - 1)
 
 
 def end_shares(one: Input) -> list[float]:
@@ -406,20 +440,6 @@ def end_shares(one: Input) -> list[float]:
     if one.choices:
         return [(k + 0.5) / len(one.choices) for k in range(len(one.choices))]
     return [PERCENTILES[0] / 100.0, PERCENTILES[-1] / 100.0]
-
-
-def sobol_points(importance: FloatArray, samples: int, seed: int) -> FloatArray:
-    """Return (samples, inputs) scrambled Sobol points; the most important inputs get the first dimensions.
-
-    ``importance`` (inputs,): grows with the effect of an input. Few points fill the planes of later
-    dimensions unevenly, see docs/verification/uncertainty.md. Inputs that are equal by symmetry keep their
-    order: importance is rounded.
-    """
-    from scipy.stats import qmc  # takes a third of a second, and the first results have no use for it
-
-    importance = np.round(importance, 6)
-    points = qmc.Sobol(importance.size, rng=np.random.default_rng(seed)).random(samples)
-    return np.asarray(points[:, np.argsort(np.argsort(-importance, kind="stable"))])
 
 
 def _ends(
@@ -528,13 +548,11 @@ def _dataset(
     (input, end, column): results of one input alone; ``enough``: there are enough samples for a range, else
     percentiles are NaN.
     """
-    from scipy.stats import rankdata
-
     bearing = "force on the pinion bearings, mesh order"
     results = QUANTITIES | {name: ("N", f"{bearing} {m}") for m, name in enumerate(_ORDER_NAMES, 1)}
     results |= {} if pair.healthy is pair else TEETH
     shares, intervals = _percentiles(table, enough=enough)
-    ranks = rankdata(points, axis=0)
+    ranks = _ranks(points)
     variables: dict[str, Variable] = {}
     for column, (name, (unit, text)) in enumerate(results.items()):
         values = table[:, column]
@@ -585,11 +603,16 @@ def _number(one: Input, share: float) -> float:
     return float(one.choices.index(value)) if isinstance(value, str) else value
 
 
+def _ranks(columns: FloatArray) -> FloatArray:
+    """Ranks of the values of each column, from 1; equal values have the mean of their ranks."""
+    import pandas as pd  # xarray has imported it; scipy.stats would take a quarter of a second
+
+    return np.asarray(pd.DataFrame(columns).rank().to_numpy(), dtype=np.float64)
+
+
 def _rank_correlation(ranks: FloatArray, values: FloatArray) -> FloatArray:
     """Spearman's coefficient of the ranks (samples, inputs) of each input with a result; 0 for a constant."""
-    from scipy.stats import rankdata
-
-    result_ranks = rankdata(values)
+    result_ranks = _ranks(values[:, None])[:, 0]
     result_ranks = result_ranks - result_ranks.mean()
     ranks = ranks - ranks.mean(axis=0)
     size = np.sqrt((result_ranks @ result_ranks) * (ranks**2).sum(axis=0))

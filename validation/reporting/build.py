@@ -151,7 +151,13 @@ def report(
         from validation.reporting.page import render
 
         figures = folder / "figures"
-        chapters, images = written(results, CHAPTERS, figures, lambda f, stage="", /: tell(0.9 * f, stage))
+        chapters, images = written(
+            results,
+            CHAPTERS,
+            figures,
+            lambda f, stage="", /: tell(0.9 * f, stage),
+            meanwhile=lambda: _write_data(results, folder / "data"),
+        )
         first = first_page(results)
         pictures: tuple[Picture, ...] = ()
         if results.without_motion is None:
@@ -160,8 +166,7 @@ def report(
         blocks = [block for _, content in chapters for block in content.blocks]
         every = (*pictures, *(block for block in blocks if isinstance(block, Picture)))
         images |= draw_pictures(pictures, figures, lambda share: tell(0.9 + 0.07 * share, "figures"))
-        tell(0.97, "data")
-        _write_data(results, folder / "data")
+        tell(0.97, "tables")
         (folder / "tables").mkdir()
         write_tables([block for block in blocks if isinstance(block, Table)], every, folder / "tables")
         data = document(results, first, chapters, quick=quick)
@@ -217,11 +222,17 @@ def findings(results: Results) -> frozenset[str]:
 
 
 def written(
-    results: Results, chapters: Sequence[Chapter], figures: Path, progress: Progress
+    results: Results,
+    chapters: Sequence[Chapter],
+    figures: Path,
+    progress: Progress,
+    meanwhile: Callable[[], None] = lambda: None,
 ) -> tuple[tuple[Written, ...], dict[str, str]]:
     """Write the chapters, without those that the report leaves out, and draw their pictures.
 
     Returns the chapters, and key of a picture -> data URI. ``figures``: folder of the pictures.
+    ``meanwhile`` is called before the chapters that read the range over speed, of which a second process may
+    compute a part at that time.
     """
     total = sum(chapter.seconds for chapter in chapters)
     made: list[Written] = []
@@ -234,7 +245,12 @@ def written(
         progress(shown, stage)
 
     # Samples first, the range over speed last: a second process computes it meanwhile, and draws no pictures.
+    last = False
     for chapter in sorted(chapters, key=lambda one: (one.key in _LAST) - (one.key == "how_sure")):
+        if chapter.key in _LAST and not last:
+            last = True
+            progress(shown, "data")
+            meanwhile()
         results.progress = partial(tell, done, chapter.seconds)
         content = _content(chapter, results)
         done += chapter.seconds

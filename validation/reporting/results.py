@@ -13,6 +13,7 @@ import xarray as xr
 import floquet
 import lumped
 import multibody
+from floquet.engine.many_multipliers import quick_multipliers
 from floquet.gear.axes import chart_axes, operating_rpm, speed_range
 from floquet.gear.jump_search import JumpSearch, contact_loss_windows, search_jumps
 from floquet.gear.motions import GearOrbit
@@ -25,9 +26,9 @@ from lumped.model.steady import solutions_over_speed
 from lumped.model.sweep import resolved_sweep, systems_over_speed
 from lumped.outcomes import Absent, Outcome
 from lumped.schema.pair import GearPair
-from lumped.typing import IntArray, Progress
+from lumped.typing import FloatArray, IntArray, Progress
 from validation.cross_check.comparison import CrossCheck, crosscheck
-from validation.prediction.assumed_teeth import WIDENED, assumed_teeth, widened
+from validation.prediction.assumed_teeth import WIDENED, drawn_machines, results_of_machines, widened
 from validation.prediction.budget import error_budget
 from validation.prediction.inputs import given_and_assumed, uncertain_inputs
 from validation.prediction.motion import (
@@ -44,10 +45,14 @@ from validation.prediction.uncertainty import (
     LEAST_BAND,
     LONG_STEP,
     STEP,
+    Sampled,
     Varied,
+    joined,
     least_samples,
+    parts_of,
+    peaks_over_speed,
+    range_over_speed,
     sampled_predictions,
-    speed_band,
     teeth_band,
     uncertainty,
 )
@@ -82,6 +87,10 @@ _ABOUT = 0.1
 #: With more vibrations in a mesh cycle than this, half of the samples and half of the speeds are
 #: computed: each costs more time, and no resonance shows any more.
 _MANY = 300.0
+#: Parts of the range over speed and of the machines with drawn teeth. Each is computed by the process that
+#: has nothing else to do, in its share of the processor time. A part begins one machine at least.
+_BAND_PARTS = 4
+_TEETH_PARTS = 2
 #: Output times in a mesh cycle of the second program on shafts.
 _SAMPLES = 512
 
@@ -327,18 +336,38 @@ class Results:
     @computed_once
     def band(self) -> xr.Dataset | Absent:
         """Range of the transmission error on springs over speed with the uncertain inputs."""
+        parts = [self.band_1, self.band_2, self.band_3, self.band_4]
+        sampled = joined([part for part in parts if not isinstance(part, Absent)])
+        return parts[0] if isinstance(parts[0], Absent) else range_over_speed(self._band_speeds, sampled)
+
+    @property
+    def _band_speeds(self) -> FloatArray:
+        """Speeds of the range over speed [rpm]."""
+        # Resonances are wider the faster the pair runs.
+        low, high = self.speeds
+        count = self.effort.band_speeds // (2 if self.vibrations > _MANY else 1)
+        return np.linspace(low**0.5, high**0.5, count) ** 2
+
+    def _part_of_band(self, number: int) -> Sampled[FloatArray] | Absent:
+        """Peaks to peaks over speed of a part of the samples."""
         if isinstance(self.uncertainty, Absent):
             return self.uncertainty
         self.stage("range over speed")
-        # Resonances are wider the faster the pair runs.
-        low, high = self.speeds
-        slow = self.vibrations > _MANY
-        count = self.effort.band_speeds
-        speeds = np.linspace(low**0.5, high**0.5, count // 2 if slow else count) ** 2
-        step = LONG_STEP if slow else STEP
         samples = self.effort.band_samples
-        seconds = self.effort.band_seconds
-        return speed_band(self.pair_on_springs, speeds, self.uncertainty, samples, step, seconds)
+        return peaks_over_speed(
+            self.pair_on_springs,
+            self._band_speeds,
+            self.uncertainty,
+            samples,
+            LONG_STEP if self.vibrations > _MANY else STEP,
+            self.effort.band_seconds / _BAND_PARTS,
+            parts_of(samples, _BAND_PARTS)[number],
+        )
+
+    band_1 = computed_once(lambda self: self._part_of_band(0))
+    band_2 = computed_once(lambda self: self._part_of_band(1))
+    band_3 = computed_once(lambda self: self._part_of_band(2))
+    band_4 = computed_once(lambda self: self._part_of_band(3))
 
     @computed_once
     def teeth_band(self) -> xr.Dataset | None:
@@ -355,13 +384,25 @@ class Results:
         None: the file states tooth errors, every input is known, the report draws no teeth, or like teeth
         lose contact, so that no ratio to them says what the errors do.
         """
+        parts = [self.teeth_1, self.teeth_2]
+        sampled = joined([part for part in parts if part is not None])
+        varied_inputs = not isinstance(self.uncertainty, Absent)
+        return None if parts[0] is None else results_of_machines(self.pair, sampled, varied=varied_inputs)
+
+    def _part_of_teeth(self, number: int) -> Sampled[list[float]] | None:
+        """A part of the machines with drawn teeth. None as for ``assumed_teeth``."""
         machines = self.effort.drawn_machines
         if self.given is not self.pair or not machines or not self.varies or self.like_loses_contact:
             return None
         samples = self.uncertainty
         self.stage("teeth of an assumed class")
         varied_inputs = None if isinstance(samples, Absent) else samples
-        return assumed_teeth(self.pair, varied_inputs, machines, self.effort.drawn_seconds)
+        seconds = self.effort.drawn_seconds / _TEETH_PARTS
+        part = parts_of(machines, _TEETH_PARTS)[number]
+        return drawn_machines(self.pair, varied_inputs, machines, seconds, part)
+
+    teeth_1 = computed_once(lambda self: self._part_of_teeth(0))
+    teeth_2 = computed_once(lambda self: self._part_of_teeth(1))
 
     @computed_once
     def record_samples(self) -> Varied | None:
@@ -465,6 +506,11 @@ class Results:
         """Verdicts of the stability chart over speed, at the damping of the pair."""
         nearest = int(np.abs(self.chart["damping_ratio"].to_numpy() - self.pair.mesh.damping_ratio).argmin())
         return np.asarray(self.chart["verdict"].isel(damping_ratio=nearest).to_numpy(), dtype=np.int64)
+
+    @computed_once
+    def eigenvalue_kernel(self) -> None:
+        """Compile or load the kernel of all multipliers, which depends on no pair."""
+        quick_multipliers(np.eye(2)[None], np.zeros(1))
 
     @computed_once
     def chart(self) -> xr.Dataset:

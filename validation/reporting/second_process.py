@@ -6,48 +6,49 @@ the same time, whatever the pair is. A second process that dies, or a result tha
 only: the first process computes what is missing. Both processes compute the same numbers by the same
 functions. A limit of processor time is that of the process that computes.
 
-Messages are pickled tuples (kind, name, content) over standard input and output of the second process. The
-content is pickled by itself, so that a result that cannot be read spoils no other message.
+Messages are pickled tuples (kind, name, content) over two pipes. The content is pickled by itself, so that a
+result that cannot be read spoils no other message. ``validation.reporting.start`` starts the process.
 """
 
 from __future__ import annotations
 
 import pickle
-import subprocess
-import sys
 import threading
 import warnings
-from collections.abc import Container, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Container
+from contextlib import suppress
 from contextvars import ContextVar
-from typing import Any, NamedTuple
+from typing import IO, Any, NamedTuple, Protocol
 
-from lumped.cache import cores
 from lumped.errors import NumericalError
 from lumped.typing import Progress
 
 #: What the second process computes, in this order: property of ``Results`` -> properties that it needs first,
 #: from either process. What needs the multibody model or Floquet theory is here, so that of most kernels
-#: each is loaded, or compiled, by one process alone.
+#: each is loaded, or compiled, by one process alone. In a first report the process begins with a kernel that
+#: needs no other one, while the first process compiles those that both need. The chart compiles most of all
+#: behind the cross-check, so it comes next. The last two are what the first process takes first where it
+#: waits: their kernels are those of the chart.
 WORK: dict[str, tuple[str, ...]] = {
+    "eigenvalue_kernel": (),
     "check": (),
     "run_on_shafts": (),
+    "chart": (),
     "sweep": (),
     "contact_loss_windows": ("sweep", "like_loses_contact"),
     "jump_search": ("contact_loss_windows",),
-    "chart": (),
-    "multipliers": (),
-    "proven_stability": (),
     "resonance": (),
     "orders_over_speed": (),
-    "band": ("uncertainty",),
+    **{f"band_{number}": ("uncertainty",) for number in (1, 2, 3, 4)},
     "teeth_band": ("uncertainty",),
-    "assumed_teeth": ("uncertainty", "like_loses_contact"),
+    **{f"teeth_{number}": ("uncertainty", "like_loses_contact") for number in (1, 2)},
+    "multipliers": (),
+    "proven_stability": (),
 }
 #: Time after which the first process says again what it waits for [s].
 _WAIT = 0.5
 #: The second process of the present command.
-_present: ContextVar[SecondProcess | None] = ContextVar("present", default=None)
+PRESENT: ContextVar[SecondProcess | None] = ContextVar("present", default=None)
 
 
 class Message(NamedTuple):
@@ -70,17 +71,36 @@ class Answer(NamedTuple):
     warnings: tuple[tuple[Warning | str, type[Warning], str, int], ...]
 
 
+class Started(Protocol):
+    """What is used of ``subprocess.Popen``."""
+
+    @property
+    def pid(self) -> int:
+        """Number of the process."""
+
+    @property
+    def stdin(self) -> IO[bytes] | None:
+        """Way to the process."""
+
+    @property
+    def stdout(self) -> IO[bytes] | None:
+        """Way back."""
+
+    def kill(self) -> None:
+        """End the process, whatever it does."""
+
+    def wait(self) -> int:
+        """Wait for the end of the process."""
+
+
 class SecondProcess:
     """A second process that computes ``WORK`` for one pair.
 
-    The process starts at once and imports; it computes from ``begin`` on. ``close`` ends it at any time.
+    ``process`` has started; it computes from ``begin`` on. ``close`` ends it at any time.
     """
 
-    def __init__(self) -> None:
-        # -P: a folder of the user cannot replace a package of the same name.
-        command = [sys.executable, "-P", "-m", "validation.reporting.worker"]
-        pipe = subprocess.PIPE
-        self._process = subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=subprocess.DEVNULL)
+    def __init__(self, process: Started) -> None:
+        self._process = process
         self._changed = threading.Condition()
         self._open = dict(WORK)
         self._under_way = ""
@@ -222,25 +242,9 @@ class SecondProcess:
         return Message(*pickle.load(stream))
 
 
-@contextmanager
-def second_process() -> Iterator[None]:
-    """Let reports in the block use a second process, where there are two processors."""
-    process = None
-    if cores() > 1:
-        with suppress(OSError):  # no process can be started
-            process = SecondProcess()
-    token = _present.set(process)
-    try:
-        yield
-    finally:
-        _present.reset(token)
-        if process is not None:
-            process.close()
-
-
 def present_process() -> SecondProcess | None:
     """Return the second process of the present command. None: there is none."""
-    return _present.get()
+    return PRESENT.get()
 
 
 def warn_again(answer: Answer) -> None:

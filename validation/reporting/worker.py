@@ -11,7 +11,7 @@ import sys
 import threading
 import time
 import warnings
-from typing import Any, BinaryIO
+from typing import Any, BinaryIO, NoReturn
 
 from validation.reporting.second_process import Answer, Message
 
@@ -75,14 +75,16 @@ def _receive(stream: BinaryIO, received: queue.SimpleQueue[Message]) -> None:
         os._exit(0)
 
 
-def main() -> None:
+def ignore_interrupts() -> None:
+    """Ignore Ctrl-C, which goes to both processes: it ends the first one, which ends this one."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+def serve(work: BinaryIO, to_answers: BinaryIO) -> NoReturn:
     """Compute what the first process asks for, until it says that this is all, or ends."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C ends the first process, which ends this one
-    gc.set_threshold(5_000_000)  # as in the command itself
-    answers = Answers(os.fdopen(os.dup(1), "wb"))
-    os.dup2(2, 1)  # what a library prints is no message
+    answers = Answers(to_answers)
     received: queue.SimpleQueue[Message] = queue.SimpleQueue()
-    threading.Thread(target=_receive, args=(sys.stdin.buffer, received), daemon=True).start()
+    threading.Thread(target=_receive, args=(work, received), daemon=True).start()
 
     from numba.core import event
 
@@ -93,10 +95,19 @@ def main() -> None:
     pair, effort, name = pickle.loads(received.get().content)
     results = Results(pair, effort, name, answers.tell)
     answers.send(Message("ready"))
-    while (work := received.get()).name:
-        vars(results).update(pickle.loads(work.content))
-        answers.send(answer_of(results, work.name))
+    while (asked := received.get()).name:
+        vars(results).update(pickle.loads(asked.content))
+        answers.send(answer_of(results, asked.name))
     os._exit(0)  # nothing is left to do; to take libraries down would take time
+
+
+def main() -> NoReturn:
+    """Compute for the process that started this interpreter."""
+    ignore_interrupts()
+    gc.set_threshold(5_000_000)  # as in the command itself
+    to_answers = os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)  # what a library prints is no message
+    serve(sys.stdin.buffer, to_answers)
 
 
 if __name__ == "__main__":

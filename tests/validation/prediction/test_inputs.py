@@ -24,7 +24,8 @@ from validation.prediction.inputs import (
     source_of,
     uncertain_inputs,
 )
-from validation.prediction.uncertainty import sobol_points, varied
+from validation.prediction.sobol import sobol_points
+from validation.prediction.uncertainty import varied
 
 PAIR = lumped.load_gear_pair("nasa_28_28")
 

@@ -12,6 +12,7 @@ from tests.unlike_pairs import known_sizes, unlike_pair
 from validation.prediction import compare as compare_module
 from validation.prediction import uncertainty as module
 from validation.prediction.compare import compare
+from validation.prediction.sobol import sobol_points
 from validation.prediction.uncertainty import (
     FLAGS,
     least_samples,
@@ -72,7 +73,7 @@ def test_first_points_fill_the_space_more_evenly_than_random_ones():
     Of n random values it is about ln(n)/n; of Sobol points at most 2/2^k, 2^k the power of two below n, and
     the end of an interval adds one.
     """
-    points = module.sobol_points(np.zeros(12), 128, 1)
+    points = sobol_points(np.zeros(12), 128, 1)
     for count in (33, 47, 90):
         gaps = np.diff(np.sort(points[:count], axis=0), axis=0, prepend=0.0, append=1.0)
         assert gaps.max() <= 2.0 / 2 ** int(math.log2(count)) < math.log(count) / count

@@ -5,7 +5,8 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from scipy.stats import binom, qmc
+import xarray as xr
+from scipy.stats import binom, qmc, rankdata
 
 import floquet
 import lumped
@@ -14,11 +15,16 @@ from tests.unlike_pairs import all_assumed, known_sizes, unlike_pair
 from validation.exchange.new_pair_file import new_pair
 from validation.prediction.inputs import forms_beside, uncertain_inputs
 from validation.prediction.motion import predicted
+from validation.prediction.sobol import sobol_points
 from validation.prediction.uncertainty import (
     _ends,
+    _ranks,
     importance_of,
+    joined,
+    parts_of,
+    peaks_over_speed,
     percentile_interval,
-    sobol_points,
+    range_over_speed,
     speed_band,
     teeth_band,
     transmission_error,
@@ -116,6 +122,30 @@ def test_a_time_limit_has_no_meaning_on_an_executor():
             uncertainty(LINEAR, 16, executor="tcp://head:8786")
 
 
+@pytest.mark.parametrize("count", [8, 23, 32, 64, 128, 500])
+def test_the_interval_of_a_percentile_is_that_of_the_binomial_distribution(count):
+    for percentile in (5.0, 50.0, 95.0):
+        low, high = binom.ppf([0.05, 0.95], count, percentile / 100.0)
+        assert percentile_interval(count, percentile) == (max(low - 1, 0), min(high, count - 1))
+
+
+def test_ranks_are_those_of_the_library():
+    rng = np.random.default_rng(5)
+    columns = np.column_stack([rng.normal(size=40), rng.integers(0, 5, 40), np.full(40, 2.0)])
+    np.testing.assert_array_equal(_ranks(columns), rankdata(columns, axis=0))
+
+
+@pytest.mark.parametrize(("samples", "seed"), [(16, 1), (128, 1), (256, 1), (16, 2)])
+def test_stored_points_are_those_of_the_library(samples, seed, tmp_path, monkeypatch):
+    """Seed 1, up to 128 points, is stored. The first points of a sequence do not depend on their number."""
+    monkeypatch.setattr("lumped.cache.user_cache_path", lambda *_, **__: tmp_path)
+    drawn = qmc.Sobol(5, rng=np.random.default_rng(seed)).random(samples)
+    importance = np.arange(5.0)[::-1]  # dimensions in their order
+    for _ in ("drawn", "read"):
+        np.testing.assert_array_equal(sobol_points(importance, samples, seed), drawn)
+    assert any(tmp_path.rglob("*.npz")) == (seed == 1 and samples <= 128)
+
+
 def test_the_first_dimensions_are_those_of_the_inputs_that_matter_most():
     """Shares 0.2, 1 and 0.5: of a refused end nothing is known, and each result is measured by itself."""
     inputs = [SimpleNamespace(choices=choices) for choices in ((), (), "abc")]
@@ -129,6 +159,19 @@ def test_the_first_dimensions_are_those_of_the_inputs_that_matter_most():
     np.testing.assert_allclose(share, [0.2, 1.0, 0.5])
     sobol = qmc.Sobol(3, rng=np.random.default_rng(3)).random(8)
     np.testing.assert_array_equal(sobol_points(share, 8, 3)[:, [1, 2, 0]], sobol)
+
+
+def test_parts_of_the_samples_are_all_samples(torque):
+    """Seven parts of 16 samples: of three and of two."""
+    speeds = np.array([700.0, 900.0])
+    arguments = (LINEAR, speeds, torque, 16, 1.0, None)
+    whole = peaks_over_speed(*arguments)
+    parts = parts_of(16, 7)
+    assert [part.stop - part.start for part in parts] == [2, 2, 2, 3, 2, 2, 3]
+    again = joined([peaks_over_speed(*arguments, part) for part in reversed(parts)][::-1])
+    np.testing.assert_array_equal(again.results, whole.results)
+    assert (again.taken, again.asked) == (whole.taken, whole.asked) == (16, 16)
+    xr.testing.assert_identical(range_over_speed(speeds, again), speed_band(LINEAR, speeds, torque, 16))
 
 
 def test_the_band_over_speed_is_about_the_sweep(torque):

@@ -13,7 +13,14 @@ import lumped
 from lumped.outcomes import Absent
 from tests.unlike_pairs import known_sizes, unlike_pair
 from tests.validation.reporting.written import SMALL, plain
-from validation.prediction.assumed_teeth import REVOLUTION, WIDENED, revolution_range, widened
+from validation.prediction.assumed_teeth import (
+    REVOLUTION,
+    WIDENED,
+    assumed_teeth,
+    revolution_range,
+    widened,
+)
+from validation.prediction.uncertainty import speed_band
 from validation.reporting.blocks import Text
 from validation.reporting.chapters import how_sure
 from validation.reporting.effort import FULL, QUICK
@@ -37,6 +44,15 @@ def results() -> Results:
 @pytest.fixture(scope="module")
 def first(results) -> PageOne:
     return page_one(results)
+
+
+def test_parts_that_either_process_computes_are_the_whole(results):
+    """Band over speed and drawn teeth, of which a second process computes any part."""
+    speeds = results.band["speed_rpm"].to_numpy()
+    band = speed_band(results.pair_on_springs, speeds, results.uncertainty, EFFORT.band_samples)
+    xr.testing.assert_identical(results.band, band)
+    teeth = assumed_teeth(PAIR, results.uncertainty, EFFORT.drawn_machines)
+    xr.testing.assert_identical(results.assumed_teeth, teeth)
 
 
 def test_ranges_of_page_1_are_those_of_samples_and_drawn_teeth(results, first):
