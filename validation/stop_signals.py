@@ -84,12 +84,15 @@ def _interrupt_behind(frame: FrameType, event: str, argument: Any) -> None:
 
 
 @contextmanager
-def interruption_kept() -> Iterator[None]:
-    """Raise KeyboardInterrupt where the block raises another error after a signal."""
+def interruption_kept(*but: type[Exception]) -> Iterator[None]:
+    """Raise KeyboardInterrupt where the block raises another error after a signal.
+
+    ``but``: errors by which the block ends when it has said itself that it was interrupted.
+    """
     try:
         yield
-    except Exception:
-        if _stopped.is_set():
+    except Exception as error:
+        if _stopped.is_set() and not isinstance(error, but):
             raise KeyboardInterrupt from None
         raise
 

@@ -128,12 +128,14 @@ def test_the_message_has_the_ladder_and_what_is_not_told_apart():
         **{name: getattr(result, name) for name in ("words", "problem", "nearer", "remarks")}
     )
     explained.explanations = steps
+    explained.ladder = SimpleNamespace(others_alone=(Alternative("density", 1.2, 0.41, "Denser"),))
     lines = ladder_text(explained).splitlines()
     assert lines[0] == result.words
     assert lines[1] == f"  dte: misfit {percent(result.misfit)}"
-    assert lines[2:5] == [
+    assert lines[2:6] == [
         "  1. Stiffness 15 % lower: the misfit is then 20 %",
         "     or: Width less: 22 %",
         "  2. No friction: the misfit is then 1 %",
+        "     alone: Denser: 41 %",
     ]
-    assert lines[5:] == [f"  {remark}" for remark in result.remarks]
+    assert lines[6:] == [f"  {remark}" for remark in result.remarks]

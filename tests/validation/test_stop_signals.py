@@ -119,6 +119,13 @@ def test_an_error_after_a_signal_is_the_interruption(handlers):
         raise ImportError("initialization failed")
 
 
+def test_a_command_that_has_told_its_interruption_ends_as_it_says(handlers):
+    with suppress(KeyboardInterrupt):
+        os.kill(os.getpid(), signal.SIGINT)
+    with pytest.raises(LookupError, match="told"), interruption_kept(LookupError):
+        raise KeyError("told")
+
+
 def test_an_error_without_a_signal_is_itself(handlers):
     with pytest.raises(ImportError, match="no library"), interruption_kept():
         raise ImportError("no library")

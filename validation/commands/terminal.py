@@ -215,7 +215,7 @@ def guarded(command: Callable[..., None]) -> Callable[..., None]:
 
         try:
             # A command draws its bar itself.
-            with interruption_kept(), warnings.catch_warnings(), without_bars():
+            with interruption_kept(typer.Exit, typer.Abort), warnings.catch_warnings(), without_bars():
                 warnings.simplefilter("always", LawRangeWarning)
                 warnings.showwarning = show
                 for name, check in checks:
