@@ -27,7 +27,7 @@ from validation.commands.response import response
 from validation.commands.stability import stability
 from validation.commands.sweep import sweep
 from validation.commands.terminal import NUMERICAL, Once, unprinted
-from validation.stop_signals import interrupt_once
+from validation.stop_signals import ended_at_once, interrupt_once
 
 #: Fewer columns in the variable COLUMNS are a mistake of the terminal.
 _FEWEST_COLUMNS = 20
@@ -151,7 +151,8 @@ def main() -> None:
         _hide_dask()
     interrupt_once()  # to the end of the process: an impatient Ctrl-C prints no traceback
     try:
-        app(prog_name="spurcheck")
+        with ended_at_once():
+            app(prog_name="spurcheck")
     except OSError as error:  # of --help and --version, and where stderr takes no message either
         with suppress(OSError):
             print(f"error: {unprinted(error)}", file=sys.stderr)

@@ -6,16 +6,20 @@ The first signal raises KeyboardInterrupt, which does not arrive by itself every
   crashes. Most signals arrive in compiled code, and Python handles them in the first function behind it.
 - In a function that a library in C calls, and in ``__del__``, Python prints the error and goes on.
 - A library makes another error of it: exudyn an ImportError of its import.
+
+And numba's compiler, stopped in its work, leaves parts of a kernel with two owners. Both would free them when
+Python takes its modules down at the end, and the process would crash.
 """
 
 from __future__ import annotations
 
+import atexit
 import os
 import signal
 import sys
 import threading
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import partial
 from types import FrameType
 from typing import Any
@@ -95,6 +99,32 @@ def interruption_kept(*but: type[Exception]) -> Iterator[None]:
         if _stopped.is_set() and not isinstance(error, but):
             raise KeyboardInterrupt from None
         raise
+
+
+@contextmanager
+def ended_at_once() -> Iterator[None]:
+    """Let a process that a signal stops in the block end without taking its modules down.
+
+    Functions that the block gives to ``atexit`` still run. The exit code is that of the ``SystemExit`` in
+    which the block ends, or 130.
+    """
+    code = 128 + signal.SIGINT
+
+    def end() -> None:
+        for stream in (sys.stdout, sys.stderr):
+            with suppress(Exception):  # closed, or a pipe that nobody reads
+                stream.flush()
+        os._exit(code)
+
+    atexit.register(end)  # before all others, so that it is called last
+    try:
+        yield
+    except SystemExit as error:
+        code = error.code if isinstance(error.code, int) else int(error.code is not None)
+        raise
+    finally:
+        if not _stopped.is_set():
+            atexit.unregister(end)
 
 
 @contextmanager

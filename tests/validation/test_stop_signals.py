@@ -126,6 +126,34 @@ def test_a_command_that_has_told_its_interruption_ends_as_it_says(handlers):
         raise KeyError("told")
 
 
+#: A module that ends the process with 99 when Python takes it down, and a function at its exit.
+ENDING = """
+import atexit, os, signal, sys
+from validation.stop_signals import ended_at_once, interrupt_once
+
+class Crash:
+    def __del__(self, end=os._exit):
+        end(99)
+
+interrupt_once()
+with ended_at_once():
+    atexit.register(print, "told at exit")
+    kept = Crash()
+    try:
+        {stop}
+    finally:
+        sys.exit(7)
+"""
+
+
+@pytest.mark.parametrize(("stop", "code"), [("os.kill(os.getpid(), signal.SIGTERM)", 7), ("pass", 99)])
+def test_a_stopped_process_does_not_take_its_modules_down(stop, code, tmp_path):
+    """numba's compiler, stopped in its work, would free parts of a kernel twice."""
+    command = [sys.executable, "-c", ENDING.format(stop=stop)]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout.strip()) == (code, "told at exit")
+
+
 def test_an_error_without_a_signal_is_itself(handlers):
     with pytest.raises(ImportError, match="no library"), interruption_kept():
         raise ImportError("no library")
