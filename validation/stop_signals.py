@@ -28,6 +28,8 @@ _NAMES = ("SIGINT", "SIGTERM", "SIGHUP")
 _OURS = (signal.SIG_DFL, signal.default_int_handler)
 #: Whether a signal has stopped the program, since the last call of ``interrupt_once``.
 _stopped = threading.Event()
+#: The error that ends a stopped process, with all objects on its way, which would be freed without it.
+_kept: list[BaseException] = []
 
 
 def stop_signals() -> list[signal.Signals]:
@@ -119,8 +121,11 @@ def ended_at_once() -> Iterator[None]:
     atexit.register(end)  # before all others, so that it is called last
     try:
         yield
-    except SystemExit as error:
-        code = error.code if isinstance(error.code, int) else int(error.code is not None)
+    except BaseException as error:
+        if isinstance(error, SystemExit):
+            code = error.code if isinstance(error.code, int) else int(error.code is not None)
+        if _stopped.is_set():
+            _kept.append(error)
         raise
     finally:
         if not _stopped.is_set():
